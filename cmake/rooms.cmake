@@ -1,0 +1,38 @@
+# A room is a folder of src/ and a library of its own that links only what it may use.
+
+# shaderx_room(NAME SOURCES file... [LINKS room-or-target...])
+function(shaderx_room name)
+    cmake_parse_arguments(ROOM "" "" "SOURCES;LINKS" ${ARGN})
+    string(REPLACE "/" "_" name ${name})
+    add_library(shaderx_${name} STATIC ${ROOM_SOURCES})
+    target_include_directories(shaderx_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+    target_link_libraries(shaderx_${name} PUBLIC shaderx_options)
+    foreach(link ${ROOM_LINKS})
+        if(EXISTS ${PROJECT_SOURCE_DIR}/src/${link}/CMakeLists.txt)
+            string(REPLACE "/" "_" library ${link})
+            target_link_libraries(shaderx_${name} PUBLIC shaderx_${library})
+        else()
+            target_link_libraries(shaderx_${name} PUBLIC ${link})
+        endif()
+    endforeach()
+endfunction()
+
+# shaderx_need(ROOM): adds a room that is not there yet
+function(shaderx_need room)
+    string(REPLACE "/" "_" library ${room})
+    if(NOT TARGET shaderx_${library} AND EXISTS ${PROJECT_SOURCE_DIR}/src/${room}/CMakeLists.txt)
+        add_subdirectory(${PROJECT_SOURCE_DIR}/src/${room} ${PROJECT_BINARY_DIR}/src/${room})
+    endif()
+endfunction()
+
+# shaderx_test(ROOM file...): the unit tests that sit beside a room's sources
+function(shaderx_test room)
+    if(NOT SHADERX_TESTS)
+        return()
+    endif()
+    string(REPLACE "/" "_" program ${room})
+    add_executable(${program}_test ${ARGN})
+    target_link_libraries(${program}_test PRIVATE shaderx_${program} GTest::gtest_main)
+    target_compile_definitions(${program}_test PRIVATE SHADERX_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    gtest_discover_tests(${program}_test DISCOVERY_MODE PRE_TEST PROPERTIES LABELS ${program})
+endfunction()

@@ -1,0 +1,91 @@
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "base/diagnostics.h"
+#include "base/names.h"
+#include "base/numbers.h"
+
+namespace shaderx {
+namespace {
+
+TEST(Names, EqualTextIsOneName) {
+    NameTable names;
+    Name a = names.intern("wood"), b = names.intern("wo"), empty = names.intern("");
+    EXPECT_EQ(names.intern("wood"), a);
+    EXPECT_NE(a, b);
+    EXPECT_TRUE(empty);
+    EXPECT_EQ(names.text(empty), "");
+    EXPECT_EQ(names.text(Name()), "");
+    EXPECT_FALSE(names.find("oak"));
+    EXPECT_EQ(names.find("wo"), b);
+}
+
+TEST(Names, ManyStayFindable) {
+    NameTable names;
+    for (int i = 0; i < 20000; i++)
+        ASSERT_EQ(names.intern("n" + std::to_string(i)).index, static_cast<std::uint32_t>(i));
+    for (int i = 0; i < 20000; i++) ASSERT_EQ(names.text(names.find("n" + std::to_string(i))), "n" + std::to_string(i));
+    std::string huge(1 << 20, 'x');
+    EXPECT_EQ(names.text(names.intern(huge)), huge);
+}
+
+TEST(Names, StartFromAnImage) {
+    std::string_view bytes = "addmix";
+    std::uint32_t ends[] = {3, 6}, slots[8] = {};
+    for (std::uint32_t i = 0; i < 2; i++) {
+        std::uint32_t slot = hashText(i ? "mix" : "add") & 7;
+        while (slots[slot]) slot = (slot + 1) & 7;
+        slots[slot] = i + 1;
+    }
+    NameTable names(NameImage{ends, slots, bytes});
+    EXPECT_EQ(names.intern("mix").index, 1u);
+    EXPECT_EQ(names.intern("layer").index, 2u);
+    EXPECT_EQ(names.text(Name(0)), "add");
+    EXPECT_EQ(names.text(Name(2)), "layer");
+}
+
+TEST(Numbers, ShortestTextReadsBack) {
+    EXPECT_EQ(formatFloat(0.2f), "0.2");
+    EXPECT_EQ(formatFloat(1.0f), "1");
+    for (float v : {0.1f, 1e-38f, 3.4028235e38f, 16777216.0f, -0.0f, 1.0f / 3.0f})
+        EXPECT_EQ(parseFloat(formatFloat(v)), v);
+}
+
+TEST(Numbers, WhatIsNoNumberIsNone) {
+    for (std::string_view text : {"", " ", "1.2.3", "0x10", "1e", "nan", "inf", "1e999", "1,2", "1 2", "--1"})
+        EXPECT_FALSE(parseFloat(text)) << text;
+    for (std::string_view text : {"", "1.5", "99999999999", "a", "1 2"}) EXPECT_FALSE(parseInt(text)) << text;
+    EXPECT_EQ(parseFloat(" +0.5 "), 0.5f);
+    EXPECT_EQ(parseInt("-7"), -7);
+}
+
+TEST(Diagnostics, FormatsPlacePathNotesAndHint) {
+    Diagnostics all;
+    Diagnostic& d = all.error("unknown-node", "there is no node <mux>");
+    d.where = {"a.mtlx", 3, 5};
+    d.path = "NG/mix1";
+    d.notes.push_back({{"b.mtlx", 1, 1}, "included from here"});
+    d.hint = "did you mean 'mix'?";
+    all.warning("unused-input", "nothing reads this input");
+    EXPECT_EQ(all.text(),
+              "a.mtlx:3:5: error: there is no node <mux> [unknown-node]\n  at: NG/mix1\n"
+              "  note: b.mtlx:1:1: included from here\n  hint: did you mean 'mix'?\n"
+              "warning: nothing reads this input [unused-input]\n");
+    EXPECT_EQ(all.errorCount(), 1u);
+    EXPECT_FALSE(all.hasInternal());
+}
+
+TEST(Diagnostics, LocateCountsFromOne) {
+    EXPECT_EQ(locate("f", "a\nbc\n", 3).line, 2u);
+    EXPECT_EQ(locate("f", "a\nbc\n", 3).column, 2u);
+    EXPECT_EQ(locate("f", "", 100).line, 1u);
+}
+
+TEST(Diagnostics, NearestIsALikelyMisspelling) {
+    EXPECT_EQ(nearest("base_colour", {"base", "base_color", "coat_color"}), "base_color");
+    EXPECT_EQ(nearest("xyz", {"base", "coat"}), "");
+}
+
+}  // namespace
+}  // namespace shaderx

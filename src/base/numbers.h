@@ -1,0 +1,20 @@
+// Numbers to text and back, independent of the locale.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace shaderx {
+
+// The shortest decimal text that reads back as the same float; `1`, `0.2`, `1e-08`, `nan`, `-inf`.
+std::string formatFloat(float value);
+
+// Reads a whole text, blanks around it allowed; none if anything else is left. Values too large for a float are none.
+std::optional<float> parseFloat(std::string_view text);
+std::optional<int> parseInt(std::string_view text);
+
+// The text without blanks (space, tab, line ends) at both ends.
+std::string_view trim(std::string_view text);
+
+}  // namespace shaderx
