@@ -1,0 +1,292 @@
+#include "ir/builder.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+#include "base/diagnostics.h"
+#include "ir/simplify.h"
+
+namespace shaderx::ir {
+
+Builder::Builder(Module& module, Function& function) : module_(module), f_(function) {
+    // A function that is built further keeps its expressions unique.
+    grow();
+}
+
+static std::uint32_t mix(std::uint32_t h, std::uint32_t v) {
+    h = (h ^ v) * 0x9e3779b1u;
+    return h ^ h >> 15;
+}
+
+static std::uint32_t hashExpr(const Expr& e, std::span<const ExprId> operands, const Function& f) {
+    std::uint32_t h = mix(static_cast<std::uint32_t>(e.op) << 16 | static_cast<std::uint32_t>(e.type), 0x51ed270bu);
+    if (e.op == Op::Constant && componentCount(e.type) > 0)
+        for (int i = 0; i < componentCount(e.type); i++) h = mix(h, f.words[e.payload + i]);
+    else
+        h = mix(h, e.payload);
+    for (ExprId o : operands) h = mix(h, o.index);
+    return h;
+}
+
+static bool equal(const Expr& a, std::span<const ExprId> ao, const Expr& b, std::span<const ExprId> bo,
+                  const Function& f) {
+    if (a.op != b.op || a.type != b.type || !std::equal(ao.begin(), ao.end(), bo.begin(), bo.end())) return false;
+    if (a.op == Op::Constant && componentCount(a.type) > 0)
+        return std::equal(f.words.begin() + a.payload, f.words.begin() + a.payload + componentCount(a.type),
+                          f.words.begin() + b.payload);
+    return a.payload == b.payload;
+}
+
+std::uint32_t Builder::slotOf(const Expr& key, std::span<const ExprId> operands) const {
+    std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1, i = hashExpr(key, operands, f_) & mask;
+    while (slots_[i]) {
+        const Expr& other = f_.exprs[slots_[i] - 1];
+        if (equal(other, f_.operandsOf(other), key, operands, f_)) break;
+        i = (i + 1) & mask;
+    }
+    return i;
+}
+
+void Builder::grow() {
+    slots_.assign(std::max<std::size_t>(64, std::bit_ceil(f_.exprs.size() * 4)), 0);
+    for (std::size_t i = 0; i < f_.exprs.size(); i++)
+        slots_[slotOf(f_.exprs[i], f_.operandsOf(f_.exprs[i]))] = static_cast<std::uint32_t>(i + 1);
+}
+
+ExprId Builder::intern(const Expr& key, std::span<const ExprId> operands) {
+    if (f_.exprs.size() * 2 >= slots_.size()) grow();
+    std::uint32_t slot = slotOf(key, operands);
+    if (slots_[slot]) return ExprId(slots_[slot] - 1);
+    Expr e = key;
+    e.operandCount = static_cast<std::uint16_t>(operands.size());
+    ensure(operands.size() == e.operandCount, "too many operands");
+    e.firstOperand = static_cast<std::uint32_t>(f_.operands.size());
+    // The operands may lie in the very array that grows.
+    std::size_t n = operands.size();
+    if (n && operands.data() >= f_.operands.data() && operands.data() < f_.operands.data() + f_.operands.size()) {
+        std::size_t at = static_cast<std::size_t>(operands.data() - f_.operands.data());
+        for (std::size_t i = 0; i < n; i++) {
+            ExprId o = f_.operands[at + i];
+            f_.operands.push_back(o);
+        }
+    } else {
+        f_.operands.insert(f_.operands.end(), operands.begin(), operands.end());
+    }
+    f_.exprs.push_back(e);
+    f_.hints.emplace_back();
+    slots_[slot] = static_cast<std::uint32_t>(f_.exprs.size());
+    return ExprId(static_cast<std::uint32_t>(f_.exprs.size() - 1));
+}
+
+ExprId Builder::constant(Type type, std::span<const std::uint32_t> words) {
+    ensure(static_cast<int>(words.size()) == componentCount(type), "constant of another size");
+    Expr key{Op::Constant, 0, 0, type, 0, 0, static_cast<std::uint32_t>(f_.words.size())};
+    std::size_t before = f_.exprs.size(), size = f_.words.size();
+    f_.words.insert(f_.words.end(), words.begin(), words.end());
+    ExprId made = intern(key, {});
+    if (made.index < before) f_.words.resize(size);  // an older constant has these words
+    return made;
+}
+
+ExprId Builder::constant(Type type, std::initializer_list<float> values) {
+    std::uint32_t words[16];
+    int n = componentCount(type);
+    for (int i = 0; i < n; i++) {
+        float v = values.size() == 1 ? *values.begin() : values.begin()[i];
+        words[i] = info(type).scalar == Scalar::Float ? std::bit_cast<std::uint32_t>(v)
+                                                      : static_cast<std::uint32_t>(static_cast<int>(v));
+    }
+    return constant(type, std::span<const std::uint32_t>(words, static_cast<std::size_t>(n)));
+}
+
+ExprId Builder::integer(int v) {
+    std::uint32_t word = static_cast<std::uint32_t>(v);
+    return constant(Type::Integer, std::span<const std::uint32_t>(&word, 1));
+}
+
+ExprId Builder::boolean(bool v) {
+    std::uint32_t word = v;
+    return constant(Type::Boolean, std::span<const std::uint32_t>(&word, 1));
+}
+
+ExprId Builder::string(Name text) { return intern({Op::Constant, 0, 0, Type::String, 0, 0, text.index}, {}); }
+
+ExprId Builder::null(Type type) {
+    if (type == Type::String) return string(module_.names->intern(""));
+    if (componentCount(type)) return constant(type, {0.0f});
+    return intern({Op::Constant, 0, 0, type, 0, 0, 0}, {});
+}
+
+ExprId Builder::param(std::uint32_t index) {
+    ensure(index < f_.params.size(), "no such parameter");
+    return intern({Op::Param, 0, 0, f_.params[index].type, 0, 0, index}, {});
+}
+
+ExprId Builder::context(Context c) {
+    return intern({Op::Context, 0, 0, info(c).type, 0, 0, static_cast<std::uint32_t>(c)}, {});
+}
+
+ExprId Builder::attribute(Name name, Type type) { return intern({Op::Attribute, 0, 0, type, 0, 0, name.index}, {}); }
+
+ExprId Builder::uniform(Name name, Type type) { return intern({Op::Uniform, 0, 0, type, 0, 0, name.index}, {}); }
+
+ExprId Builder::emit(Op op, Type type, std::span<const ExprId> operands, std::uint32_t payload) {
+    ensure(type != Type::Void, "operands do not fit the operation");
+    if (ExprId simple = simplify(*this, op, type, operands, payload)) return simple;
+    return intern({op, 0, 0, type, 0, 0, payload}, operands);
+}
+
+ExprId Builder::op(Op op, std::initializer_list<ExprId> operands) {
+    Type types[8];
+    ensure(operands.size() <= 8, "too many operands");
+    for (std::size_t i = 0; i < operands.size(); i++) types[i] = type(operands.begin()[i]);
+    return emit(op, resultType(op, std::span(types, operands.size())), operands);
+}
+
+ExprId Builder::make(Type type, std::span<const ExprId> parts) { return emit(Op::Make, type, parts); }
+
+ExprId Builder::swizzle(ExprId value, std::uint32_t mask) {
+    const TypeInfo& t = info(type(value));
+    if (t.columns > 1) return emit(Op::Swizzle, floatVector(t.rows), {value}, mask);
+    if (t.scalar != Scalar::Float) {
+        ensure(t.rows == 1, "swizzle of no vector");
+        return value;
+    }
+    return emit(Op::Swizzle, floatVector(swizzleCount(mask), t.role), {value}, mask);
+}
+
+ExprId Builder::convert(ExprId value, Type to) {
+    Type from = type(value);
+    if (from == to) return value;
+    const TypeInfo &a = info(from), &b = info(to);
+    if (componentCount(from) == 1 && componentCount(to) == 1) return emit(Op::Convert, to, {value});
+    if (componentCount(from) == 1 && b.rows > 1 && b.columns == 1) return make(to, {convert(value, Type::Float)});
+    if (a.columns == 1 && b.columns == 1 && a.rows == b.rows && a.rows > 1) return emit(Op::Retype, to, {value});
+    // A material is its surface or volume shader.
+    if (to == Type::Material && (from == Type::SurfaceShader || from == Type::VolumeShader))
+        return emit(Op::Retype, to, {value});
+    return {};
+}
+
+ExprId Builder::select(ExprId condition, ExprId then, ExprId otherwise) {
+    ensure(type(then) == type(otherwise), "select of two types");
+    return emit(Op::Select, type(then), {condition, then, otherwise});
+}
+
+ExprId Builder::call(Name function, Type type, std::span<const ExprId> arguments) {
+    return emit(Op::Call, type, arguments, function.index);
+}
+
+ExprId Builder::result(ExprId callOrLoop, std::uint32_t k, Type type) {
+    return emit(Op::Result, type, {callOrLoop}, k);
+}
+
+std::uint32_t Builder::beginLoop() { return f_.loops++; }
+
+ExprId Builder::loopIndex(std::uint32_t loop) {
+    return intern({Op::LoopArg, 0, 0, Type::Integer, 0, 0, loop << 8}, {});
+}
+
+ExprId Builder::loopCarried(std::uint32_t loop, std::uint32_t k, Type type) {
+    ensure(k < 255, "too many carried values");
+    return intern({Op::LoopArg, 0, 0, type, 0, 0, loop << 8 | (k + 1)}, {});
+}
+
+ExprId Builder::endLoop(std::uint32_t loop, ExprId count, std::span<const ExprId> first, std::span<const ExprId> next) {
+    ensure(first.size() == next.size(), "carried values without a next one");
+    std::vector<ExprId> operands{count};
+    operands.insert(operands.end(), first.begin(), first.end());
+    operands.insert(operands.end(), next.begin(), next.end());
+    return emit(Op::Loop, Type::Tuple, operands, loop);
+}
+
+void Builder::addResult(Name name, ExprId value) { f_.results.push_back({name, type(value), value}); }
+
+void Builder::hint(ExprId e, Name name) {
+    if (!f_.hints[e.index]) f_.hints[e.index] = name;
+    // What fills a vector is what is computed.
+    const Expr& x = f_.exprs[e.index];
+    if (x.op != Op::Make || x.operandCount != 1) return;
+    Name& inner = f_.hints[f_.operands[x.firstOperand].index];
+    if (!inner) inner = name;
+}
+
+// The wider of two operand types; a matrix is only as wide as itself or a scalar.
+static Type wider(Type a, Type b) {
+    const TypeInfo &x = info(a), &y = info(b);
+    if (x.scalar != y.scalar || x.scalar == Scalar::None) return Type::Void;
+    if (componentCount(b) == 1) return a;
+    if (componentCount(a) == 1) return b;
+    return x.rows == y.rows && x.columns == y.columns ? a : Type::Void;
+}
+
+static Type productType(Type a, Type b) {
+    const TypeInfo &x = info(a), &y = info(b);
+    if (x.columns < 2 || y.rows != x.rows) return Type::Void;
+    return b;
+}
+
+Type resultType(Op op, std::span<const Type> t) {
+    const OpInfo& o = info(op);
+    if (o.operands >= 0 && static_cast<std::size_t>(o.operands) != t.size()) return Type::Void;
+    switch (o.rule) {
+        case TypeRule::Given:
+            return Type::Void;
+        case TypeRule::Same:
+            return t[0];
+        case TypeRule::Wider: {
+            Type type = t[0];
+            for (Type next : t.subspan(1)) type = type == Type::Void ? type : wider(type, next);
+            return type;
+        }
+        case TypeRule::Scalar:
+            return info(t[0]).scalar == Scalar::Float ? Type::Float : Type::Void;
+        case TypeRule::Boolean:
+            return Type::Boolean;
+        case TypeRule::Matrix:
+            return productType(t[0], t[1]);
+    }
+    return Type::Void;
+}
+
+std::vector<std::uint32_t> loopsOf(const Function& f) {
+    std::vector<std::uint32_t> inside(f.exprs.size(), kNoLoop);
+    // Of each loop, the one around it; known from what its body takes from that, even where its operands take nothing.
+    std::vector<std::uint32_t> outer(f.loops, kNoLoop);
+    auto innermost = [](std::uint32_t a, std::uint32_t b) {
+        return a == kNoLoop ? b : b == kNoLoop ? a : std::max(a, b);
+    };
+    bool changed = true;
+    while (changed) {  // a few turns for each depth of the nest
+        changed = false;
+        for (std::size_t i = 0; i < f.exprs.size(); i++) {
+            const Expr& e = f.exprs[i];
+            const bool isLoop = e.op == Op::Loop || e.op == Op::Lights;
+            std::uint32_t now = e.op == Op::LoopArg ? e.payload >> 8 : isLoop ? outer[e.payload] : kNoLoop;
+            for (ExprId o : f.operandsOf(e))
+                if (!(isLoop && inside[o.index] == e.payload)) now = innermost(now, inside[o.index]);
+            if (now != inside[i]) changed = true;
+            inside[i] = now;
+            if (now == kNoLoop) continue;
+            for (ExprId o : f.operandsOf(e)) {
+                const std::uint32_t l = inside[o.index];
+                if (l == kNoLoop || l >= now || outer[now] == innermost(outer[now], l)) continue;
+                outer[now] = innermost(outer[now], l);
+                changed = true;
+            }
+        }
+    }
+    return inside;
+}
+
+std::vector<bool> reachable(const Function& f) {
+    std::vector<bool> live(f.exprs.size());
+    for (const ResultValue& r : f.results) live[r.value.index] = true;
+    for (std::size_t i = f.exprs.size(); i-- > 0;)
+        if (live[i])
+            for (ExprId o : f.operandsOf(f.exprs[i])) live[o.index] = true;
+    return live;
+}
+
+}  // namespace shaderx::ir

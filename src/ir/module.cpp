@@ -1,0 +1,63 @@
+#include "ir/module.h"
+
+#include "base/diagnostics.h"
+
+namespace shaderx::ir {
+
+Function& Module::add(Name name) {
+    Function f;
+    f.name = name;
+    return put(std::move(f));
+}
+
+Function& Module::put(Function function) {
+    Function*& slot = byName_[function.name];
+    if (slot) {
+        *slot = std::move(function);
+        return *slot;
+    }
+    functions.push_back(std::make_unique<Function>(std::move(function)));
+    return *(slot = functions.back().get());
+}
+
+Function* Module::findOwn(Name name) const {
+    auto it = byName_.find(name);
+    return it == byName_.end() ? nullptr : it->second;
+}
+
+const Function* Module::find(Name name) const {
+    if (const Function* own = findOwn(name)) return own;
+    for (FunctionSource* source : sources)
+        if (const Function* f = source->find(name)) return f;
+    return nullptr;
+}
+
+void Module::keepOnly(std::span<const Name> kept) {
+    std::vector<std::unique_ptr<Function>> ordered;
+    std::unordered_map<Name, Function*> byName;
+    for (Name name : kept)
+        for (std::unique_ptr<Function>& f : functions)
+            if (f && f->name == name) {
+                byName[name] = f.get();
+                ordered.push_back(std::move(f));
+            }
+    functions = std::move(ordered);
+    byName_ = std::move(byName);
+}
+
+Uniform* Module::uniform(Name name) {
+    for (; uniformsKnown_ < uniforms.size(); uniformsKnown_++)
+        uniformByName_.emplace(uniforms[uniformsKnown_].name, uniformsKnown_);
+    auto it = uniformByName_.find(name);
+    return it == uniformByName_.end() ? nullptr : &uniforms[it->second];
+}
+
+const LeafInfo* Module::leaf(Name name) const {
+    for (const LeafInfo& l : leaves)
+        if (l.name == name) return &l;
+    for (FunctionSource* source : sources)
+        if (const LeafInfo* l = source->findLeaf(name)) return l;
+    return nullptr;
+}
+
+}  // namespace shaderx::ir

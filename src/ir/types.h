@@ -1,0 +1,70 @@
+// The types of the IR. A type is one number; the built-in ones are named here, structures follow them
+// (Module::structs).
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace shaderx::ir {
+
+// MaterialX's types, and point and normal of the shading languages. Three floats are not one type: the role (color,
+// vector, point, normal) is kept until a target erases it.
+enum class Type : std::uint16_t {
+    Void,
+    Boolean,
+    Integer,
+    Float,
+    Color3,
+    Color4,
+    Vector2,
+    Vector3,
+    Vector4,
+    Point,
+    Normal,
+    Matrix33,
+    Matrix44,
+    String,     // only ever a constant; gone after `specialise`
+    Texture2D,  // an image and how it is read; a MaterialX `filename` input becomes one
+    Tuple,      // the results of a call or loop with several; only `result` reads it
+    BSDF,       // closures: values until the shade stage
+    EDF,
+    VDF,
+    SurfaceShader,
+    DisplacementShader,
+    VolumeShader,
+    LightShader,
+    Material,
+    FirstStruct,  // FirstStruct + i is Module::structs[i]
+};
+constexpr int kBuiltinTypes = static_cast<int>(Type::FirstStruct);
+
+enum class Scalar : std::uint8_t { None, Boolean, Integer, Float };
+enum class Role : std::uint8_t { None, Color, Vector, Point, Normal };
+
+struct TypeInfo {
+    std::string_view name;  // as MaterialX and the shading language spell it
+    Scalar scalar;          // of each component, None for what has none
+    std::uint8_t rows;      // components of a column
+    std::uint8_t columns;   // above 1 for matrices
+    Role role;
+};
+
+// Structures read as a type without components.
+const TypeInfo& info(Type type);
+
+// The built-in type of a name, or Void where there is none; "color" is color3, "vector" vector3, "int" integer.
+Type typeNamed(std::string_view name);
+
+// Numbers in a value of the type: 3 of a color3, 9 of a matrix33, 0 of a closure.
+inline int componentCount(Type t) { return info(t).rows * info(t).columns; }
+inline bool isClosure(Type t) { return t >= Type::BSDF && t <= Type::Material; }
+inline bool isScalar(Type t) { return componentCount(t) == 1; }
+inline bool isVector(Type t) { return info(t).rows > 1 && info(t).columns == 1; }
+inline bool isMatrix(Type t) { return info(t).columns > 1; }
+inline bool isFloatVector(Type t) { return isVector(t) && info(t).scalar == Scalar::Float; }
+inline bool isNumeric(Type t) { return info(t).scalar == Scalar::Float || info(t).scalar == Scalar::Integer; }
+
+// The vector type of n floats (1 gives Float); the role Color where asked for and n allows it.
+Type floatVector(int n, Role role = Role::Vector);
+
+}  // namespace shaderx::ir
