@@ -1,0 +1,103 @@
+#include "doc/connect.h"
+
+namespace shaderx::doc {
+
+ElementId scopeOf(const Document& d, ElementId element) {
+    ElementId at = d[element].parent;
+    while (at && d[at].parent && d[at].category != d.known().nodegraph) at = d[at].parent;
+    return at;
+}
+
+// The first output of a nodegraph.
+static ElementId firstOutput(const Document& d, ElementId graph) {
+    for (ElementId c : children(d, graph))
+        if (d[c].category == d.known().output) return c;
+    return {};
+}
+
+// An output of a nodegraph by name, or its first one.
+static ElementId outputOf(const Document& d, ElementId graph, Name output) {
+    return output ? d.child(graph, d.known().output, output) : firstOutput(d, graph);
+}
+
+// An element beside the port's owner; a nodegraph may also stand at the top.
+static ElementId lookUp(const Document& d, ElementId port, ElementId scope, Name name) {
+    ElementId found = d.childFrom(port, scope, name);
+    if (found || scope == d.root()) return found;
+    ElementId top = d.childFrom(port, d.root(), name);
+    return top && d[top].category == d.known().nodegraph ? top : ElementId();
+}
+
+static Connection toGraphOrNode(const Document& d, ElementId port, ElementId scope, Name attribute, Name name) {
+    const WellKnown& k = d.known();
+    Connection c{Connection::Kind::Dangling, {}, d.attribute(port, k.output), attribute};
+    ElementId found = attribute == k.nodename ? d.childFrom(port, scope, name) : lookUp(d, port, scope, name);
+    if (!found) return c;
+    if (d[found].category == k.nodegraph) {
+        c.target = outputOf(d, found, c.output);
+        if (c.target)
+            c.kind = Connection::Kind::Output;
+        else
+            c.attribute = k.output;
+    } else if (attribute == k.nodename && d[found].category == k.output) {
+        c.target = found;
+        c.kind = Connection::Kind::Output;
+    } else if (attribute == k.nodename && isNode(d, found)) {
+        c.target = found;
+        c.kind = Connection::Kind::Node;
+    }
+    return c;
+}
+
+Connection connection(const Document& d, ElementId port) {
+    const WellKnown& k = d.known();
+    Name nodename, nodegraph, output, interfacename;
+    for (const Attribute& a : d.attributes(port)) {
+        if (a.name == k.nodename) nodename = a.value;
+        if (a.name == k.nodegraph) nodegraph = a.value;
+        if (a.name == k.output) output = a.value;
+        if (a.name == k.interfacename) interfacename = a.value;
+    }
+    if (!nodename && !nodegraph && !output && !interfacename) return {};
+
+    // An output stands in its scope, an input in a node or graph that stands in its scope.
+    ElementId owner = d[port].parent;
+    ElementId scope = d[port].category == k.output || !owner || !d[owner].parent ? owner : d[owner].parent;
+    if (!scope) return {};
+    if (nodegraph) return toGraphOrNode(d, port, scope, k.nodegraph, nodegraph);
+    if (nodename) return toGraphOrNode(d, port, scope, k.nodename, nodename);
+    if (interfacename) {
+        Connection c{Connection::Kind::Interface, {}, {}, k.interfacename};
+        c.target = d.child(scope, interfacename);
+        if (c.target && d[c.target].category != k.input) c.target = {};
+        return c;
+    }
+    Connection c{Connection::Kind::Output, d.childFrom(port, scope, output), output, k.output};
+    if (c.target && d[c.target].category != k.output) c.target = d.child(scope, k.output, output);
+    if (!c.target || c.target == port) c = {Connection::Kind::Dangling, {}, output, k.output};
+    return c;
+}
+
+bool isNode(const Document& d, ElementId element) {
+    const Element& e = d[element];
+    if (!e.parent || !e.category) return false;
+    if (e.parent != d.root() && d[e.parent].category != d.known().nodegraph) return false;
+    const WellKnown& k = d.known();
+    if (e.category == k.input || e.category == k.output || e.category == k.nodegraph || e.category == k.nodedef)
+        return false;
+    std::string_view text = d.text(e.category);
+    if (text.empty() || text[0] == '#') return false;
+    constexpr std::string_view kFormat[] = {
+        "parameter",   "token",     "implementation", "look",        "lookgroup", "materialassign",
+        "collection",  "geominfo",  "geomprop",       "geompropdef", "typedef",   "unitdef",
+        "unittypedef", "targetdef", "attributedef",   "propertyset", "property",  "propertyassign",
+        "variantset",  "variant",   "variantassign",  "visibility",  "backdrop",  "xi:include",
+        "materialx",   "member",    "unit",           "geomattr",    "opgraph",   "shader",
+        "material",    "shaderref",
+    };
+    for (std::string_view f : kFormat)
+        if (f == text) return false;
+    return true;
+}
+
+}  // namespace shaderx::doc

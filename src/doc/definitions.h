@@ -1,0 +1,166 @@
+// Node definitions and implementations of a list of documents.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "doc/document.h"
+
+namespace shaderx::doc {
+
+// An input or output of a nodedef.
+struct Port {
+    static constexpr std::uint32_t kOwnLayer = 0xffffffffu;
+
+    Name name, type;
+    ElementId element;
+    std::uint32_t layer = kOwnLayer;  // whose document `element` is of, if it is not that of the nodedef
+};
+
+struct NodeDefRow {
+    enum : std::uint32_t { DefaultVersion = 1, OpenInherit = 2 };
+
+    Name category;  // of its nodes, with the namespace: "mix", "studio:rust"
+    Name name;      // with the namespace
+    Name output;    // type of its one output, or multioutput
+    Name version, target, inherit;
+    ElementId element;
+    std::uint32_t firstPort = 0, inputCount = 0, outputCount = 0;  // inherited ones included; the inputs come first
+    std::uint32_t flags = 0;  // OpenInherit: what it inherits is in another document
+};
+
+struct ImplementationRow {
+    enum Kind : std::uint32_t {
+        Graph,         // <nodegraph nodedef="…">
+        LinkedGraph,   // <implementation nodedef="…" nodegraph="…">
+        Source,        // <implementation nodedef="…" file="…" | sourcecode="…">
+        CategoryWide,  // <implementation node="add" …>: for every nodedef of that category
+    };
+
+    Name key;  // the nodedef's name, or the category
+    Name target;
+    ElementId element;
+    std::uint32_t kind = Graph;
+};
+
+struct NameRow {
+    Name name;
+    std::uint32_t row;
+};
+
+// What a document defines, as sorted arrays of plain data: built once, it can be stored beside the document's own
+// arrays and be read in place. Sorting is by name handle, then by document order.
+struct DefinitionsIndex {
+    std::span<const NodeDefRow> nodedefs;                // by category
+    std::span<const NameRow> names;                      // of the nodedefs, by name
+    std::span<const Port> ports;                         // of NodeDefRow::firstPort
+    std::span<const ImplementationRow> implementations;  // by key
+};
+
+struct DefinitionsTables {
+    std::vector<NodeDefRow> nodedefs;
+    std::vector<NameRow> names;
+    std::vector<Port> ports;
+    std::vector<ImplementationRow> implementations;
+    DefinitionsIndex index() const { return {nodedefs, names, ports, implementations}; }
+};
+DefinitionsTables buildIndex(const Document& document);
+
+// A nodedef of a Definitions. A default-made one is none.
+struct NodeDef {
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    std::uint32_t layer = kNone, row = kNone;
+    explicit operator bool() const { return row != kNone; }
+    friend bool operator==(NodeDef, NodeDef) = default;
+};
+
+struct GivenInput {
+    Name name, type;
+};
+
+// What is asked for: a node as written.
+struct Query {
+    Name category;
+    Name type;                           // of the output, multioutput, or none for any
+    std::span<const GivenInput> inputs;  // those that the node gives; a none type fits any
+    Name version;                        // none asks for the default version
+    Name target;                         // none for any
+    Name nodedef;                        // asks for that one by name
+    Name space;                          // the namespace of the node, tried first for category and nodedef
+};
+
+struct Match {
+    NodeDef def;
+    bool exact = false;  // every given input is one of the nodedef's, with its type
+    explicit operator bool() const { return static_cast<bool>(def); }
+};
+
+struct Implementation {
+    enum class Kind : std::uint8_t { None, Graph, Source };
+    Kind kind = Kind::None;
+    ElementRef element;  // the <implementation>, or the <nodegraph nodedef=…> itself
+    ElementRef graph;    // of Kind::Graph: the nodegraph
+    Name target;         // the target it serves, none if it is portable
+    explicit operator bool() const { return kind != Kind::None; }
+};
+
+// Definitions of several documents, searched in the order in which they were added: first the user's document, then the
+// user's libraries, then the built-in one. It is a snapshot: after edits of nodedefs, make a new one. The documents
+// must outlive it and share one name table.
+class Definitions {
+  public:
+    void add(const Document& document);                          // builds the index
+    void add(const Document& document, DefinitionsIndex index);  // uses a stored one, which must outlive this
+
+    // The nodedef that fits: the first whose signature fits exactly, else the first of that category, output type,
+    // version and target, not exact; else none.
+    Match match(const Query& query) const;
+    // The same for a node element as it is written, its attribute `nodedef` included.
+    Match match(const Document& document, ElementId node, Name target = {}) const;
+    // A nodedef by name; `space` is tried first.
+    NodeDef byName(Name name, Name space = {}) const;
+    bool hasCategory(Name category, Name space = {}) const;
+    // All of a category, in order.
+    std::vector<NodeDef> ofCategory(Name category, Name space = {}) const;
+    // All categories, each once.
+    std::vector<Name> categories() const;
+
+    const NodeDefRow& row(NodeDef def) const { return layers_[def.layer].index.nodedefs[def.row]; }
+    ElementRef element(NodeDef def) const { return {layers_[def.layer].document, row(def).element}; }
+    // The whole interface: inherited ports in the order of the base, each replaced by the def's own of that name, then
+    // the def's further ones.
+    std::span<const Port> inputs(NodeDef def) const;
+    std::span<const Port> outputs(NodeDef def) const;
+    ElementRef element(NodeDef def, const Port& port) const;
+    const Port* input(NodeDef def, Name name) const;
+    const Port* output(NodeDef def, Name name) const;
+
+    // What implements a nodedef: in each document in turn, one for the first of the targets that has one, else a
+    // portable one; those of the nodedef go before category-wide ones; then what the inherited nodedef has.
+    Implementation implementation(NodeDef def, std::span<const Name> targets = {}) const;
+    // The nodedef that a nodegraph implements (by its own attribute or by an <implementation>), none if it is none's.
+    NodeDef implementedBy(const Document& document, ElementId graph) const;
+
+  private:
+    struct Layer {
+        const Document* document;
+        DefinitionsIndex index;
+        std::unique_ptr<DefinitionsTables> own;
+    };
+    struct Flat {
+        NodeDef def;
+        std::vector<Port> ports;
+        std::uint32_t inputCount = 0;
+    };
+    std::span<const NodeDefRow> range(const Layer& layer, Name category) const;
+    const Flat* flatten(NodeDef def) const;
+    NodeDef base(NodeDef def) const;
+    Implementation inLayer(const Layer& layer, Name key, bool categoryWide, std::span<const Name> targets) const;
+
+    std::vector<Layer> layers_;
+    mutable std::deque<Flat> flat_;  // of nodedefs that inherit across documents
+};
+
+}  // namespace shaderx::doc

@@ -1,0 +1,56 @@
+// Typed values from their MaterialX text.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace shaderx::doc {
+
+enum class ValueType : std::uint8_t {
+    Boolean,
+    Integer,
+    Float,
+    Color3,
+    Color4,
+    Vector2,
+    Vector3,
+    Vector4,
+    Matrix33,
+    Matrix44,
+    String,
+    Filename,
+    Geomname,
+    IntegerArray,
+    FloatArray,
+    Color3Array,
+    Color4Array,
+    Vector2Array,
+    Vector3Array,
+    Vector4Array,
+    StringArray,
+};
+
+// The value type of a MaterialX type's name; none for types without values (BSDF, material) and for unknown ones.
+std::optional<ValueType> valueType(std::string_view typeName);
+// How many numbers one value has: 3 for color3, 16 for matrix44, 0 for texts; for arrays, that of an item.
+std::uint32_t numberCount(ValueType type);
+
+struct Value {
+    ValueType type = ValueType::Float;
+    std::array<float, 16> numbers{};   // Float … Matrix44, row by row as written; Boolean and Integer too
+    int integer = 0;                   // Integer; Boolean as 0 or 1
+    std::string_view text;             // String, Filename, Geomname: the text itself, which must outlive the value
+    std::vector<float> floats;         // arrays of floats, colors and vectors: all items in a row
+    std::vector<int> integers;         // IntegerArray
+    std::vector<std::string> strings;  // StringArray, split at commas, blanks around the items removed
+};
+
+// Parses a value. Numbers are separated by commas or blanks, as many as the type has. Where the text is wrong, returns
+// none and, if `problem` is given, says there what is wrong: "expected 3 numbers, found 2".
+std::optional<Value> parseValue(ValueType type, std::string_view text, std::string* problem = nullptr);
+
+}  // namespace shaderx::doc

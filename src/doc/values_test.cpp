@@ -1,0 +1,53 @@
+#include "doc/values.h"
+
+#include <gtest/gtest.h>
+
+namespace shaderx::doc {
+namespace {
+
+std::string problem(ValueType type, std::string_view text) {
+    std::string out;
+    EXPECT_FALSE(parseValue(type, text, &out)) << text;
+    return out;
+}
+
+TEST(Values, ParsesEachKind) {
+    EXPECT_EQ(parseValue(ValueType::Boolean, " true ")->integer, 1);
+    EXPECT_EQ(parseValue(ValueType::Integer, "-12")->integer, -12);
+    EXPECT_FLOAT_EQ(parseValue(ValueType::Float, " 1e-3 ")->numbers[0], 1e-3f);
+    EXPECT_FLOAT_EQ(parseValue(ValueType::Color3, "0.1, 0.2,0.3")->numbers[2], 0.3f);
+    EXPECT_FLOAT_EQ(parseValue(ValueType::Vector2, "1 2")->numbers[1], 2);
+    EXPECT_FLOAT_EQ(parseValue(ValueType::Matrix33, "1,0,0, 0,1,0, 4,5,1")->numbers[7], 5);
+    EXPECT_FLOAT_EQ(parseValue(ValueType::Matrix44, "1,0,0,0, 0,1,0,0, 0,0,1,0, 7,8,9,1")->numbers[14], 9);
+    EXPECT_EQ(parseValue(ValueType::String, " a b ")->text, " a b ");
+    EXPECT_EQ(parseValue(ValueType::Filename, "")->text, "");
+    EXPECT_EQ(parseValue(ValueType::IntegerArray, "1, 2, 3")->integers.size(), 3u);
+    EXPECT_TRUE(parseValue(ValueType::FloatArray, "")->floats.empty());
+    EXPECT_EQ(parseValue(ValueType::Color3Array, "1,2,3, 4,5,6")->floats.size(), 6u);
+    EXPECT_EQ(parseValue(ValueType::StringArray, "a, b c ,d")->strings, (std::vector<std::string>{"a", "b c", "d"}));
+    EXPECT_EQ(valueType("color3"), ValueType::Color3);
+    EXPECT_EQ(valueType("vector4array"), ValueType::Vector4Array);
+    EXPECT_FALSE(valueType("BSDF"));
+    EXPECT_EQ(numberCount(ValueType::Matrix44), 16u);
+}
+
+TEST(Values, SaysWhatIsWrong) {
+    EXPECT_EQ(problem(ValueType::Color3, "1, 2"), "expected 3 numbers, found 2");
+    EXPECT_EQ(problem(ValueType::Color3, "1, 2, 3, 4"), "expected 3 numbers, found 4");
+    EXPECT_EQ(problem(ValueType::Float, ""), "expected 1 number, found none");
+    EXPECT_EQ(problem(ValueType::Float, "1, 2, 3"), "expected 1 number, found 3");
+    EXPECT_EQ(problem(ValueType::Vector2, "1, x"), "'x' is not a number");
+    EXPECT_EQ(problem(ValueType::Vector2, "1, nan"), "'nan' is not a number");
+    EXPECT_EQ(problem(ValueType::Vector2, "1,, 2"), "number 2 is missing");
+    EXPECT_EQ(problem(ValueType::Vector2, "1, 2,"), "a number is missing after the last comma");
+    EXPECT_EQ(problem(ValueType::Integer, "1.5"), "'1.5' is not an integer");
+    EXPECT_EQ(problem(ValueType::Integer, "99999999999"), "'99999999999' is not an integer");
+    EXPECT_EQ(problem(ValueType::Boolean, "yes"), "expected true or false, found 'yes'");
+    EXPECT_EQ(problem(ValueType::Color3Array, "1,2,3,4"), "expected a multiple of 3 numbers, found 4");
+    EXPECT_LT(problem(ValueType::Float, std::string(100000, 'x')).size(), 100u);
+    EXPECT_EQ(problem(ValueType::Float, std::string(39, 'x') + "ééé"),
+              "'" + std::string(39, 'x') + "…' is not a number");
+}
+
+}  // namespace
+}  // namespace shaderx::doc
