@@ -1,0 +1,317 @@
+#include "passes/place.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "ir/builder.h"
+
+namespace shaderx::passes {
+
+using namespace ir;
+
+bool isFree(const Function& f, ExprId id) {
+    const Expr& e = f[id];
+    switch (e.op) {
+        case Op::Constant:
+        case Op::Param:
+        case Op::Context:
+        case Op::Attribute:
+        case Op::Uniform:
+        case Op::LoopArg:
+        case Op::Result:
+            return true;
+        case Op::Retype:
+        case Op::Neg:
+        case Op::Swizzle:
+        case Op::Member: {
+            const Expr& of = f[f.operand(id, 0)];
+            return of.op <= Op::Uniform || of.op == Op::LoopArg || of.op == Op::Result;
+        }
+        case Op::Make:
+            return e.operandCount == 1 && f.isConstant(f.operand(id, 0));
+        default:
+            return false;  // everything that computes
+    }
+}
+
+namespace {
+
+constexpr int kMuchWork = 24;  // operations in one side of a select that are worth a branch
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+struct Scope {
+    std::uint32_t parent, depth;
+    std::uint32_t loop;  // number of the loop whose body this is, else kNoLoop
+};
+
+// Selects of one condition, decided by one `if`.
+struct Branch {
+    ExprId condition;
+    std::uint32_t scope, position, then, otherwise;  // position: the last of the selects
+    std::vector<ExprId> phis;
+};
+
+struct Placer {
+    Function& f;
+    const PlaceOptions& options;
+    std::vector<std::uint32_t> loopOf = loopsOf(f);
+    std::vector<bool> live = reachable(f);
+    std::size_t n = f.exprs.size();
+    std::vector<Scope> scopes{{0, 0, kNoLoop}};
+    std::vector<Branch> branches = {};
+    std::unordered_map<std::uint64_t, std::uint32_t> latest = {};                // branch by condition and scope
+    std::vector<std::uint32_t> scopeOf = std::vector<std::uint32_t>(n, kNone);   // where a value is computed
+    std::vector<std::uint32_t> useScope = std::vector<std::uint32_t>(n, kNone);  // common to all uses so far
+    std::vector<std::uint32_t> firstUse = std::vector<std::uint32_t>(n, kNone);  // lowest user
+    std::vector<std::uint32_t> uses = std::vector<std::uint32_t>(n, 0);
+    std::vector<std::uint32_t> bodyOf = std::vector<std::uint32_t>(n, kNone);    // of loops
+    std::vector<std::uint32_t> branchOf = std::vector<std::uint32_t>(n, kNone);  // of selects
+    std::vector<bool> named = std::vector<bool>(n, false);
+
+    void run() {
+        std::vector<int> work = exclusiveWork();
+        for (const ResultValue& r : f.results) use(r.value, 0, static_cast<std::uint32_t>(n));
+        for (std::uint32_t i = static_cast<std::uint32_t>(n); i-- > 0;)
+            if (live[i] && uses[i]) schedule(ExprId(i), work);
+        nameShared();
+        nameLong();
+        nameOfQuads();
+        emit();
+    }
+
+    bool isLoop(ExprId e) const { return f[e].op == Op::Loop || f[e].op == Op::Lights; }
+
+    // Operations below an expression, up to values that are used elsewhere too; a loop counts as much work.
+    std::vector<int> exclusiveWork() const {
+        std::vector<std::uint32_t> users(n, 0);
+        for (std::size_t i = 0; i < n; i++)
+            if (live[i])
+                for (ExprId o : f.operandsOf(f.exprs[i])) users[o.index]++;
+        std::vector<int> work(n, 0);
+        for (std::uint32_t i = 0; i < n; i++) {
+            if (!live[i] || isFree(f, ExprId(i))) {
+                // The results of one loop or call are its work.
+                if (live[i] && f.exprs[i].op == Op::Result) work[i] = work[f.operand(ExprId(i), 0).index];
+                continue;
+            }
+            int sum = isLoop(ExprId(i)) ? kMuchWork : 1;
+            for (ExprId o : f.operandsOf(f.exprs[i]))
+                if (users[o.index] <= 1 || f[o].op == Op::Result) sum += work[o.index];
+            work[i] = std::min(sum, 10000);
+        }
+        return work;
+    }
+
+    std::uint32_t common(std::uint32_t a, std::uint32_t b) const {
+        if (a == kNone) return b;
+        while (a != b)
+            (scopes[a].depth >= scopes[b].depth ? a : b) = scopes[scopes[a].depth >= scopes[b].depth ? a : b].parent;
+        return a;
+    }
+
+    void use(ExprId e, std::uint32_t scope, std::uint32_t user) {
+        useScope[e.index] = common(useScope[e.index], scope);
+        firstUse[e.index] = std::min(firstUse[e.index], user);
+        uses[e.index]++;
+    }
+
+    std::uint32_t open(std::uint32_t parent, std::uint32_t loop) {
+        scopes.push_back({parent, scopes[parent].depth + 1, loop});
+        return static_cast<std::uint32_t>(scopes.size() - 1);
+    }
+
+    // The users of `e` are all placed: places it and tells its operands.
+    void schedule(ExprId e, const std::vector<int>& work) {
+        const Expr& x = f[e];
+        std::uint32_t i = e.index, scope = hoisted(useScope[i], loopOf[i]);
+        if (x.op == Op::Ddx || x.op == Op::Ddy) scope = 0;
+        scopeOf[i] = scope;
+        auto operands = f.operandsOf(e);
+        if (isLoop(e)) {
+            bodyOf[i] = open(scope, x.payload);
+            std::size_t carried = (operands.size() - (x.op == Op::Loop)) / 2, firstNext = operands.size() - carried;
+            for (std::size_t k = 0; k < operands.size(); k++) use(operands[k], k < firstNext ? scope : bodyOf[i], i);
+        } else if (x.op == Op::Select && std::max(work[operands[1].index], work[operands[2].index]) >= kMuchWork) {
+            const Branch& b = branchFor(e, scope);
+            use(operands[0], scope, i);
+            use(operands[1], b.then, i);
+            use(operands[2], b.otherwise, i);
+        } else {
+            std::size_t count = operands.size();
+            if (readsImplicitly(e)) count = 2;
+            for (std::size_t k = 0; k < count; k++) use(operands[k], scope, i);
+        }
+    }
+
+    bool readsImplicitly(ExprId e) const {
+        if (!options.isEntry || f[e].op != Op::TextureGrad || scopeOf[e.index] != 0) return false;
+        auto o = f.operandsOf(e);
+        return f[o[2]].op == Op::Ddx && f.operand(o[2], 0) == o[1] && f[o[3]].op == Op::Ddy &&
+               f.operand(o[3], 0) == o[1];
+    }
+
+    // Out of every loop that the value does not change with.
+    std::uint32_t hoisted(std::uint32_t scope, std::uint32_t loop) const {
+        std::uint32_t best = scope;
+        for (std::uint32_t s = scope; s != 0; s = scopes[s].parent) {
+            if (scopes[s].loop == kNoLoop) continue;
+            if (loop != kNoLoop && scopes[s].loop <= loop) break;
+            best = scopes[s].parent;
+        }
+        return best;
+    }
+
+    // A branch decides a further select of its condition if nothing before the branch needs that select.
+    const Branch& branchFor(ExprId e, std::uint32_t scope) {
+        ExprId condition = f.operand(e, 0);
+        std::uint64_t key = static_cast<std::uint64_t>(condition.index) << 32 | scope;
+        if (auto known = latest.find(key);
+            known != latest.end() && firstUse[e.index] > branches[known->second].position) {
+            branches[known->second].phis.push_back(e);
+            branchOf[e.index] = known->second;
+            return branches[known->second];
+        }
+        latest[key] = static_cast<std::uint32_t>(branches.size());
+        branchOf[e.index] = static_cast<std::uint32_t>(branches.size());
+        std::uint32_t then = open(scope, kNoLoop), otherwise = open(scope, kNoLoop);
+        branches.push_back({condition, scope, e.index, then, otherwise, {e}});
+        return branches.back();
+    }
+
+    bool isStatement(std::uint32_t i) const { return bodyOf[i] != kNone || branchOf[i] != kNone; }
+
+    // Values used more than once, or computed further out than where they are used.
+    void nameShared() {
+        for (std::uint32_t i = 0; i < n; i++) {
+            if (!live[i] || !uses[i] || isStatement(i)) continue;
+            bool several = f.exprs[i].type == Type::Tuple;
+            named[i] = several || (!isFree(f, ExprId(i)) && !isView(i) && (uses[i] > 1 || scopeOf[i] != useScope[i]));
+        }
+        // What a loop counts to is asked every turn.
+        for (std::uint32_t i = 0; i < n; i++)
+            if (bodyOf[i] != kNone && f.exprs[i].op == Op::Loop)
+                if (ExprId count = f.operand(ExprId(i), 0); !isFree(f, count) && !isStatement(count.index))
+                    named[count.index] = true;
+    }
+
+    // Characters in the text of a value that costs nothing to name again, roughly.
+    int nameLength(Name name, int otherwise) const {
+        return options.names && name ? static_cast<int>(options.names->text(name).size()) : otherwise;
+    }
+    int freeLength(const Expr& e) const {
+        switch (e.op) {
+            case Op::Constant:
+                return 6 + (componentCount(e.type) > 1 ? 8 * componentCount(e.type) : 0);
+            case Op::Context:
+                return static_cast<int>(info(static_cast<Context>(e.payload)).host.size()) + 3;
+            case Op::Uniform:
+            case Op::Attribute:
+                return nameLength(Name(e.payload), 16);
+            case Op::Param:
+                return nameLength(f.params[e.payload].name, 8);
+            default:
+                return 8;  // a name
+        }
+    }
+
+    // A part, the negative or another role of a value that has a name.
+    bool isView(std::uint32_t i) const {
+        Op op = f.exprs[i].op;
+        if (op != Op::Neg && op != Op::Swizzle && op != Op::Retype) return false;
+        std::uint32_t of = f.operand(ExprId(i), 0).index;
+        return named[of] || isStatement(of);
+    }
+
+    // Splits long expressions: names the longest part, one with a name of its own before others.
+    void nameLong() {
+        std::vector<int> length(n, 0);
+        constexpr int kName = 8, kOperation = 4;
+        auto lengthOf = [&](ExprId o) {
+            return named[o.index] || isStatement(o.index) ? nameLength(f.hints[o.index], kName) : length[o.index];
+        };
+        for (std::uint32_t i = 0; i < n; i++) {
+            if (!live[i] || !uses[i]) continue;
+            if (isFree(f, ExprId(i))) {
+                length[i] = freeLength(f.exprs[i]);
+                continue;
+            }
+            if (isStatement(i)) continue;  // its operands stand in lines of their own
+            auto operands = f.operandsOf(f.exprs[i]);
+            bool isCall = f.exprs[i].op == Op::Call;
+            int own = isCall ? kOperation + nameLength(Name(f.exprs[i].payload), 16) + 2 * f.exprs[i].operandCount
+                             : kOperation;
+            for (;;) {
+                int sum = own;
+                ExprId longest;
+                int score = 3 * kName;
+                for (ExprId o : operands) {
+                    int l = lengthOf(o);
+                    sum += l;
+                    if (named[o.index] || isStatement(o.index) || isFree(f, o) || f[o].type == Type::Tuple) continue;
+                    int s = l + (f.hints[o.index] ? 2 * kName : 0);
+                    if (s > score) {
+                        score = s;
+                        longest = o;
+                    }
+                }
+                length[i] = sum;
+                if (sum <= options.longestText || !longest) break;
+                named[longest.index] = true;
+            }
+        }
+    }
+
+    // What needs the neighbouring pixels must not stand where only some pixels come by: on one side of a select that is
+    // an expression, after an `and` or `or`, in the bound of a loop.
+    void nameOfQuads() {
+        std::vector<bool> conditional(n, false);
+        for (std::uint32_t i = static_cast<std::uint32_t>(n); i-- > 0;) {
+            if (!live[i] || !uses[i]) continue;
+            Op op = f.exprs[i].op;
+            if (conditional[i] && (op == Op::Ddx || op == Op::Ddy || readsImplicitly(ExprId(i)))) named[i] = true;
+            bool inherits = conditional[i] && !named[i] && !isStatement(i);
+            auto operands = f.operandsOf(f.exprs[i]);
+            for (std::size_t k = 0; k < operands.size(); k++) {
+                bool side = (op == Op::Select && branchOf[i] == kNone && k > 0) ||
+                            ((op == Op::And || op == Op::Or) && k == 1) || (op == Op::Loop && k == 0);
+                if (side || inherits) conditional[operands[k].index] = true;
+            }
+        }
+    }
+
+    void emit() {
+        Body& body = f.body;
+        body = {};
+        body.blocks.resize(scopes.size());
+        std::vector<std::pair<std::uint32_t, Stmt>> all;  // with the position
+        for (std::uint32_t i = 0; i < n; i++) {
+            if (!live[i] || !uses[i]) continue;
+            if (bodyOf[i] != kNone)
+                all.push_back({i, {StmtKind::Loop, ExprId(i), BlockId(bodyOf[i]), {}, 0, 0}});
+            else if (named[i])
+                all.push_back({i, {StmtKind::Let, ExprId(i), {}, {}, 0, 0}});
+        }
+        for (Branch& b : branches) {
+            std::sort(b.phis.begin(), b.phis.end());
+            Stmt s{StmtKind::If,
+                   b.condition,
+                   BlockId(b.then),
+                   BlockId(b.otherwise),
+                   static_cast<std::uint32_t>(body.phis.size()),
+                   static_cast<std::uint32_t>(b.phis.size())};
+            body.phis.insert(body.phis.end(), b.phis.begin(), b.phis.end());
+            all.push_back({b.position, s});
+        }
+        std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (auto& [position, s] : all) {
+            std::uint32_t scope = s.kind == StmtKind::If ? scopes[s.body.index].parent : scopeOf[s.expr.index];
+            body.blocks[scope].push_back(s);
+        }
+    }
+};
+
+}  // namespace
+
+void place(Function& function, const PlaceOptions& options) { Placer{function, options}.run(); }
+
+}  // namespace shaderx::passes

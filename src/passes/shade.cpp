@@ -1,0 +1,346 @@
+#include "passes/shade.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "passes/copy.h"
+
+namespace shaderx::passes {
+
+using namespace ir;
+
+namespace {
+
+// Light that leaves the surface, before opacity, and the opacity.
+struct Lit {
+    ExprId color, opacity;
+};
+
+// What the functions of a leaf give.
+struct LeafLight {
+    ExprId radiance, albedo;
+};
+
+struct Shader {
+    Module& module;
+    const Function& from;
+    Diagnostics& diagnostics;
+    Function fresh{};
+    Builder b{module, fresh};
+    Copy copy{from, b};
+    std::vector<bool> live = reachable(from);
+    std::vector<ExprId> throughput = std::vector<ExprId>(from.exprs.size());
+    std::map<std::uint32_t, LeafLight> leaves{};
+    ExprId view{};
+    bool ok = true, warnedVolume = false;
+
+    Name name(std::string_view text) const { return module.names->intern(text); }
+    ExprId one() { return b.number(1); }
+
+    void run(Name output) {
+        fresh.name = from.name;
+        fresh.params = from.params;
+        fresh.comment = from.comment;
+        for (std::uint32_t i = 0; i < from.exprs.size(); i++)
+            if (live[i] && !isClosure(from.exprs[i].type)) copy.one(ExprId(i));
+        ExprId result = from.results[0].value;
+        Type type = from.results[0].type;
+        if (type == Type::Material) result = shaderOf(result);
+        ExprId pixel;
+        if (type == Type::SurfaceShader || type == Type::Material) {
+            Lit lit = surface(result);
+            pixel = b.make(Type::Vector4, {product(lit.color, lit.opacity), one()});
+        } else if (type == Type::BSDF) {
+            pixel = b.make(Type::Vector4, {environment(result, one()), one()});
+        } else if (type == Type::EDF) {
+            pixel = b.make(Type::Vector4, {emission(result), one()});
+        } else if (isClosure(type)) {
+            pixel = b.constant(Type::Vector4, {0, 0, 0, 1});
+        } else {
+            pixel = asColor(copy[result]);
+        }
+        b.addResult(output, pixel);
+    }
+
+    // A material is its surface shader as long as nothing else is drawn.
+    ExprId shaderOf(ExprId e) const { return e; }
+
+    ExprId asColor(ExprId v) {
+        Type t = b.type(v);
+        if (isMatrix(t) || componentCount(t) == 0) return b.constant(Type::Vector4, {0, 0, 0, 1});
+        switch (componentCount(t)) {
+            case 1: {
+                ExprId x = b.convert(v, Type::Float);
+                return b.make(Type::Vector4, {x, x, x, one()});
+            }
+            case 2:
+                return b.make(Type::Vector4, {v, b.number(0), one()});
+            case 3:
+                return b.make(Type::Vector4, {v, one()});
+            default:
+                return b.convert(v, Type::Vector4);
+        }
+    }
+
+    ExprId product(ExprId a, ExprId c) { return b.op(Op::Mul, {a, c}); }
+    ExprId black() { return b.constant(Type::Color3, {0.0f}); }
+
+    // Surface shaders nest only by mixing; the nest is walked with a stack in the order of the arena.
+    Lit surface(ExprId root) {
+        std::vector<Lit> lit(from.exprs.size());
+        for (std::uint32_t i = 0; i <= root.index; i++) {
+            if (!live[i] || (from.exprs[i].type != Type::SurfaceShader && from.exprs[i].type != Type::Material))
+                continue;
+            auto o = from.operandsOf(from.exprs[i]);
+            switch (from.exprs[i].op) {
+                case Op::Surface:
+                    lit[i] = {surfaceColor(o[0], o[1]), copy[o[2]]};
+                    break;
+                case Op::SurfaceUnlit:
+                    lit[i] = {copy[o[0]], copy[o[2]]};
+                    break;
+                case Op::ClosureMix: {
+                    ExprId t = copy[o[2]];
+                    Lit x = lit[o[0].index], y = lit[o[1].index];
+                    ExprId color = b.op(Op::Mix, {product(x.color, x.opacity), product(y.color, y.opacity), t});
+                    lit[i] = {color, one()};
+                    break;
+                }
+                case Op::ClosureAdd: {
+                    Lit x = lit[o[0].index], y = lit[o[1].index];
+                    lit[i] = {b.op(Op::Add, {product(x.color, x.opacity), product(y.color, y.opacity)}), one()};
+                    break;
+                }
+                case Op::ClosureScale:
+                    lit[i] = {product(lit[o[0].index].color, copy[o[1]]), lit[o[0].index].opacity};
+                    break;
+                case Op::Retype:
+                    lit[i] = lit[o[0].index];
+                    break;
+                default:
+                    lit[i] = {black(), one()};  // nothing that gives light
+            }
+        }
+        return lit[root.index];
+    }
+
+    ExprId surfaceColor(ExprId bsdf, ExprId edf) {
+        ExprId reflected = environment(bsdf, one());
+        return b.op(Op::Add, {reflected, emission(edf)});
+    }
+
+    // Weights of all closures below a root, by expression: how much of each the root contains.
+    std::vector<ExprId> weigh(ExprId root, ExprId weight, Type kind) {
+        std::vector<ExprId> w(from.exprs.size());
+        auto give = [&](ExprId to, ExprId x) {
+            ExprId& sum = w[to.index];
+            sum = sum ? b.op(Op::Add, {sum, x}) : x;
+        };
+        w[root.index] = weight;
+        for (std::uint32_t i = root.index + 1; i-- > 0;) {
+            if (!w[i]) continue;
+            const Expr& e = from.exprs[i];
+            auto o = from.operandsOf(e);
+            switch (e.op) {
+                case Op::ClosureMix: {
+                    ExprId t = copy[o[2]];
+                    give(o[0], product(w[i], b.op(Op::Sub, {one(), t})));
+                    give(o[1], product(w[i], t));
+                    break;
+                }
+                case Op::ClosureAdd:
+                    give(o[0], w[i]);
+                    give(o[1], w[i]);
+                    break;
+                case Op::ClosureScale:
+                    give(o[0], product(w[i], copy[o[1]]));
+                    break;
+                case Op::ClosureLayer:
+                    give(o[0], w[i]);
+                    if (from[o[1]].type == kind) {
+                        ExprId below = product(w[i], passed(o[0]));
+                        b.hint(below, name("passed"));
+                        give(o[1], below);
+                    } else {
+                        ignoreVolume();
+                    }
+                    break;
+                default:
+                    break;  // leaves keep what they have
+            }
+        }
+        return w;
+    }
+
+    void ignoreVolume() {
+        if (warnedVolume || !ok) return;
+        warnedVolume = true;
+        diagnostics.warning("ignored-volume", "a volume below a surface is not drawn on rasters");
+    }
+
+    // What a closure lets through to the layer below it; all that it depends on, in the order of the arena.
+    ExprId passed(ExprId root) {
+        std::vector<bool> needed(root.index + 1);
+        needed[root.index] = true;
+        for (std::uint32_t i = root.index + 1; i-- > 0;)
+            if (needed[i] && !throughput[i])
+                for (ExprId o : from.operandsOf(from.exprs[i]))
+                    if (isClosure(from[o].type)) needed[o.index] = true;
+        for (std::uint32_t i = 0; i <= root.index; i++)
+            if (needed[i] && !throughput[i]) throughput[i] = passedBy(ExprId(i));
+        return throughput[root.index];
+    }
+
+    ExprId passedBy(ExprId id) {
+        const Expr& e = from[id];
+        auto o = from.operandsOf(e);
+        auto of = [&](std::size_t k) { return throughput[o[k].index]; };
+        switch (e.op) {
+            case Op::Leaf:
+                return b.op(Op::Sub, {one(), product(weightOf(id), leaf(id).albedo)});
+            case Op::ClosureMix:
+                return b.op(Op::Mix, {of(0), of(1), copy[o[2]]});
+            case Op::ClosureLayer:
+                return from[o[1]].type == e.type ? product(of(0), of(1)) : of(0);
+            case Op::ClosureAdd: {
+                ExprId sum = b.op(Op::Sub, {b.op(Op::Add, {of(0), of(1)}), one()});
+                return b.op(Op::Max, {sum, b.number(0)});
+            }
+            case Op::ClosureScale:
+                return of(0);
+            default:
+                return one();  // nothing is in the way
+        }
+    }
+
+    // The leaf's input of a name, or none.
+    ExprId input(ExprId id, std::string_view text) {
+        const LeafInfo* info = module.leaf(Name(from[id].payload));
+        Name wanted = name(text);
+        for (std::size_t k = 0; info && k < info->params.size(); k++)
+            if (info->params[k].name == wanted) return copy[from.operand(id, k)];
+        return {};
+    }
+    ExprId weightOf(ExprId id) {
+        ExprId w = input(id, "weight");
+        return w ? w : one();
+    }
+
+    ExprId toViewer() {
+        if (!view) {
+            ExprId d = b.op(Op::Sub, {b.convert(b.context(Context::ViewPosition), Type::Vector3),
+                                      b.convert(b.context(Context::PositionWorld), Type::Vector3)});
+            view = b.op(Op::Normalize, {d});
+            b.hint(view, name("V"));
+        }
+        return view;
+    }
+
+    // The value for a parameter of a leaf's function.
+    ExprId bound(ExprId id, const Param& p) {
+        std::string_view text = module.names->text(p.name);
+        ExprId value;
+        if (text == "V") return toViewer();
+        if (text == "N") {
+            ExprId normal = input(id, "normal");
+            if (!normal) normal = b.op(Op::Normalize, {b.context(Context::NormalWorld)});
+            value = b.op(Op::Faceforward, {normal, b.op(Op::Neg, {toViewer()}), normal});
+            if (Name old = b.function().hints[normal.index]; !old || old == name("N")) b.rename(normal, name("normal"));
+            b.rename(value, name("N"));
+            return value;
+        }
+        if (text == "X") {
+            value = input(id, "tangent");
+            if (!value) value = b.op(Op::Normalize, {b.context(Context::TangentWorld)});
+            return value;
+        }
+        value = input(id, text);
+        return value && b.type(value) != p.type ? b.convert(value, p.type) : value;
+    }
+
+    // Calls a function of a leaf; its results, or none if it can't be called.
+    std::vector<ExprId> callLeaf(ExprId id, std::string_view suffix) {
+        std::string leafName(module.names->text(Name(from[id].payload)));
+        const Function* f = module.find(name(leafName + std::string(suffix)));
+        std::vector<ExprId> arguments, results;
+        for (std::size_t k = 0; f && k < f->params.size(); k++) {
+            arguments.push_back(bound(id, f->params[k]));
+            if (!arguments.back()) f = nullptr;
+        }
+        if (!f) {
+            diagnostics.error(
+                "leaf-without-function",
+                fmt::format("there is no function '{}{}' that fits the inputs of its node", leafName, suffix));
+            ok = false;
+            return results;
+        }
+        bool single = f->results.size() == 1;
+        ExprId call = b.call(f->name, single ? f->results[0].type : Type::Tuple, arguments);
+        for (std::uint32_t k = 0; k < f->results.size(); k++)
+            results.push_back(single ? call : b.result(call, k, f->results[k].type));
+        return results;
+    }
+
+    LeafLight leaf(ExprId id) {
+        auto found = leaves.find(id.index);
+        if (found != leaves.end()) return found->second;
+        std::vector<ExprId> r = callLeaf(id, "_environment");
+        LeafLight light = r.size() == 2 ? LeafLight{r[0], r[1]} : LeafLight{black(), black()};
+        if (Name hint = from.hints[id.index]; hint && r.size() == 2) {
+            b.hint(light.radiance, hint);
+            b.hint(light.albedo, name(fmt::format("{}_albedo", module.names->text(hint))));
+        }
+        return leaves[id.index] = light;
+    }
+
+    ExprId environment(ExprId bsdf, ExprId weight) {
+        std::vector<ExprId> w = weigh(bsdf, weight, Type::BSDF);
+        // From the outermost lobe inwards. Lobes that differ only in weight are one.
+        std::vector<std::pair<ExprId, ExprId>> lobes;  // radiance and weight
+        for (std::uint32_t i = bsdf.index + 1; i-- > 0;) {
+            if (!w[i] || from.exprs[i].op != Op::Leaf) continue;
+            ExprId share = product(w[i], weightOf(ExprId(i))), radiance = leaf(ExprId(i)).radiance;
+            auto same = std::find_if(lobes.begin(), lobes.end(), [&](const auto& l) { return l.first == radiance; });
+            if (same == lobes.end())
+                lobes.emplace_back(radiance, share);
+            else
+                same->second = b.op(Op::Add, {same->second, share});
+        }
+        ExprId sum;
+        for (auto [radiance, share] : lobes) {
+            ExprId lobe = product(share, radiance);
+            sum = sum ? b.op(Op::Add, {sum, lobe}) : lobe;
+        }
+        if (sum) b.hint(sum, name("light"));
+        return sum ? product(sum, b.context(Context::EnvironmentIntensity)) : black();
+    }
+
+    ExprId emission(ExprId edf) {
+        std::vector<ExprId> w = weigh(edf, one(), Type::EDF);
+        ExprId sum;
+        for (std::uint32_t i = 0; i <= edf.index; i++) {
+            if (!w[i] || from.exprs[i].op != Op::Leaf) continue;
+            std::vector<ExprId> r = callLeaf(ExprId(i), "_emission");
+            if (r.size() != 1) continue;
+            ExprId lobe = product(w[i], r[0]);
+            sum = sum ? b.op(Op::Add, {sum, lobe}) : lobe;
+        }
+        return sum ? sum : black();
+    }
+};
+
+}  // namespace
+
+bool shade(Module& module, Name entry, Name output, Diagnostics& diagnostics) {
+    Function* f = module.findOwn(entry);
+    ensure(f && f->results.size() == 1, "an entry has one result");
+    Shader s{module, *f, diagnostics};
+    s.run(output);
+    bool ok = s.ok;
+    module.put(std::move(s.fresh));
+    return ok;
+}
+
+}  // namespace shaderx::passes

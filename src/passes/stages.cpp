@@ -1,0 +1,169 @@
+#include "passes/stages.h"
+
+#include <algorithm>
+#include <bit>
+#include <unordered_set>
+
+#include "ir/builder.h"
+
+namespace shaderx::passes {
+
+using namespace ir;
+
+namespace {
+
+// What a set of functions reads.
+struct Reads {
+    std::vector<bool> contexts = std::vector<bool>(kContexts);
+    std::vector<std::pair<Name, Type>> attributes;
+    std::unordered_set<Name> uniforms;
+    std::unordered_set<Name> attributeNames;
+
+    void add(const Function& f) {
+        std::vector<bool> live = reachable(f);
+        for (std::size_t i = 0; i < f.exprs.size(); i++) {
+            const Expr& e = f.exprs[i];
+            if (!live[i]) continue;
+            if (e.op == Op::Context) contexts[e.payload] = true;
+            if (e.op == Op::Attribute) {
+                std::pair<Name, Type> a{Name(e.payload), e.type};
+                if (attributeNames.insert(a.first).second) attributes.push_back(a);
+            }
+            if (e.op == Op::Uniform) uniforms.insert(Name(e.payload));
+        }
+    }
+
+    StageUniforms stage(const Module& module) const {
+        StageUniforms s;
+        for (int c = 0; c < kContexts; c++) {
+            ContextSource source = info(static_cast<Context>(c)).source;
+            if (contexts[static_cast<std::size_t>(c)] &&
+                (source == ContextSource::Uniform || source == ContextSource::Texture))
+                s.contexts.push_back(static_cast<Context>(c));
+        }
+        for (const Uniform& u : module.uniforms)
+            if (uniforms.count(u.name)) s.uniforms.push_back(u.name);
+        return s;
+    }
+};
+
+struct VertexMaker {
+    Module& module;
+    Builder& b;
+
+    ExprId input(Context c) { return b.context(c); }
+    ExprId worldPosition() {
+        ExprId p = b.make(Type::Vector4, {input(Context::VertexPosition), b.number(1)});
+        ExprId world = b.op(Op::MulMatrix, {b.context(Context::WorldMatrix), p});
+        b.hint(world, module.names->intern("positionWorld"));
+        return world;
+    }
+    ExprId worldNormal() {
+        ExprId m = b.make(Type::Matrix33, {b.context(Context::WorldInverseTransposeMatrix)});
+        return b.op(Op::Normalize, {b.op(Op::MulMatrix, {m, input(Context::VertexNormal)})});
+    }
+    ExprId worldTangent() {
+        ExprId m = b.make(Type::Matrix33, {b.context(Context::WorldMatrix)});
+        return b.op(Op::Normalize, {b.op(Op::MulMatrix, {m, input(Context::VertexTangent)})});
+    }
+
+    ExprId value(Context c) {
+        switch (c) {
+            case Context::PositionWorld:
+                return b.convert(b.swizzle(worldPosition(), swizzleMask(3, 0, 1, 2)), Type::Point);
+            case Context::NormalWorld:
+                return worldNormal();
+            case Context::TangentWorld:
+                return worldTangent();
+            case Context::BitangentWorld:
+                return b.op(Op::Cross, {worldNormal(), worldTangent()});
+            case Context::PositionObject:
+                return input(Context::VertexPosition);
+            case Context::NormalObject:
+                return input(Context::VertexNormal);
+            case Context::TangentObject:
+                return input(Context::VertexTangent);
+            case Context::BitangentObject:
+                return b.op(Op::Cross, {input(Context::VertexNormal), input(Context::VertexTangent)});
+            default:
+                return b.null(info(c).type);  // not carried from the vertex
+        }
+    }
+};
+
+}  // namespace
+
+std::string inputName(std::string_view attribute) { return "i_" + std::string(attribute); }
+
+ShaderInterface makeStages(Module& module, Name pixel, Name vertex) {
+    ShaderInterface made;
+    made.pixel = pixel;
+    made.vertex = vertex;
+    Reads reads;
+    for (const auto& f : module.functions) reads.add(*f);
+    made.pixelUniforms = reads.stage(module);
+
+    Function f;
+    f.name = vertex;
+    Builder b(module, f);
+    VertexMaker maker{module, b};
+    ExprId clip = b.op(Op::MulMatrix, {b.context(Context::ViewProjectionMatrix), maker.worldPosition()});
+    b.addResult(module.names->intern("position"), clip);
+    for (int c = 0; c < kContexts; c++) {
+        Context context = static_cast<Context>(c);
+        if (!reads.contexts[static_cast<std::size_t>(c)] || info(context).source != ContextSource::Vertex) continue;
+        made.varyings.push_back({module.names->intern(info(context).host), info(context).type});
+        b.addResult(made.varyings.back().name, maker.value(context));
+    }
+    auto byText = [&](const auto& x, const auto& y) {
+        return module.names->text(x.first) < module.names->text(y.first);
+    };
+    std::stable_sort(reads.attributes.begin(), reads.attributes.end(), byText);
+    for (auto [name, type] : reads.attributes) {
+        made.varyings.push_back({name, type});
+        b.addResult(name, b.attribute(name, type));
+    }
+
+    Reads vertexReads;
+    vertexReads.add(f);
+    made.vertexUniforms = vertexReads.stage(module);
+    for (int c = 0; c < kContexts; c++) {
+        const ContextInfo& i = info(static_cast<Context>(c));
+        if (vertexReads.contexts[static_cast<std::size_t>(c)] && i.source == ContextSource::Input)
+            made.inputs.push_back({module.names->intern(i.host), i.type});
+    }
+    for (auto [name, type] : reads.attributes)
+        made.inputs.push_back({module.names->intern(inputName(module.names->text(name))), type});
+    module.put(std::move(f));
+    return made;
+}
+
+std::vector<std::uint32_t> defaultOf(Context c) {
+    const ContextInfo& i = info(c);
+    std::vector<std::uint32_t> words(static_cast<std::size_t>(componentCount(i.type)), 0);
+    const std::uint32_t one = std::bit_cast<std::uint32_t>(1.0f), minusOne = std::bit_cast<std::uint32_t>(-1.0f);
+    if (isMatrix(i.type))
+        for (std::size_t k = 0; k < words.size(); k += info(i.type).rows + 1u) words[k] = one;
+    switch (c) {
+        case Context::EnvironmentMatrix:
+            words[0] = words[10] = minusOne;
+            break;  // half a turn about y
+        case Context::EnvironmentIntensity:
+            words[0] = one;
+            break;
+        case Context::EnvironmentMips:
+            words[0] = 1;
+            break;
+        case Context::EnvironmentSamples:
+            words[0] = 16;
+            break;
+        case Context::AlphaThreshold:
+            words[0] = std::bit_cast<std::uint32_t>(0.001f);
+            break;
+        default:
+            break;  // zero or the unit matrix
+    }
+    return words;
+}
+
+}  // namespace shaderx::passes

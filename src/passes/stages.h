@@ -1,0 +1,48 @@
+// The interface of a shader: which values the host supplies, which travel from the vertex to the pixel.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ir/module.h"
+
+namespace shaderx::passes {
+
+// A value that the vertex stage hands to the pixel stage, interpolated.
+struct Varying {
+    Name name;  // of the member of the block VertexData
+    ir::Type type;
+};
+
+// A geometric input of the vertex stage.
+struct VertexInput {
+    Name name;  // as hosts bind it: i_normal, i_texcoord_0
+    ir::Type type;
+};
+
+// What one stage reads from the host. Contexts in the order of context.def; uniforms in that of the module.
+struct StageUniforms {
+    std::vector<ir::Context> contexts;  // uniforms and textures
+    std::vector<Name> uniforms;         // of Module::uniforms
+};
+
+struct ShaderInterface {
+    Name vertex, pixel;  // the entry functions
+    StageUniforms vertexUniforms, pixelUniforms;
+    std::vector<VertexInput> inputs;
+    std::vector<Varying> varyings;
+};
+
+// Collects what the module's entry `pixel` reads and adds the function `vertex`, whose first result is the clip-space
+// position and whose others are the varyings in their order. Positions, normals and tangents are in world space, y up;
+// normals go by the inverse transpose of the world matrix; the bitangent is cross(N, T). Attributes pass through.
+ShaderInterface makeStages(ir::Module& module, Name pixel, Name vertex);
+
+// The value that the host's variable has until it is set, by its bits; empty for textures.
+std::vector<std::uint32_t> defaultOf(ir::Context c);
+
+// Attributes in the IR have a name ("texcoord_0"); the vertex stage reads them as inputs of the name i_texcoord_0.
+std::string inputName(std::string_view attribute);
+
+}  // namespace shaderx::passes
