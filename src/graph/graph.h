@@ -1,0 +1,72 @@
+// The typed graph below an element: only what is upstream of it, in topological order.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/handle.h"
+#include "doc/definitions.h"
+#include "doc/document.h"
+#include "ir/types.h"
+
+namespace shaderx::graph {
+
+using NodeId = Handle<struct GraphNodeTag>;
+
+// Where an input of a node takes its value from.
+struct Source {
+    enum class Kind : std::uint8_t {
+        Default,    // what the nodedef says: its value or its geometric property
+        Value,      // written in the document, at `element`
+        Node,       // the output `output` of `node`
+        Interface,  // the input `input` of the nodedef that the graph implements
+    };
+    Kind kind = Kind::Default;
+    NodeId node;
+    std::uint32_t output = 0;
+    doc::ElementId element;  // the <input> that holds the value
+    Name input;
+};
+
+struct Input {
+    const doc::Port* port;  // of the nodedef
+    ir::Type type;
+    Source source;
+};
+
+struct Node {
+    doc::ElementId element;
+    doc::NodeDef def;
+    std::uint32_t firstInput = 0, inputCount = 0;  // in the order of the nodedef
+};
+
+struct Output {
+    Name name;
+    ir::Type type;
+    Source source;
+    doc::ElementId element;  // the <output>, or the node whose output it is
+};
+
+// Nodes come after all nodes that they depend on.
+struct Graph {
+    const doc::Document* document;
+    std::vector<Node> nodes;
+    std::vector<Input> inputs;
+    std::vector<Output> outputs;
+    std::vector<doc::ElementId> visited;  // all nodes upstream, those that could not be built too
+    bool isExact = true;                  // no node gives an input that its nodedef does not have, or of another type
+    std::span<const Input> inputsOf(const Node& n) const { return {inputs.data() + n.firstInput, n.inputCount}; }
+};
+
+// Builds the graph below an element: a node (all its outputs, or the one that is named), an <output>, or a nodegraph
+// (all its outputs; as the implementation of a nodedef, its interface inputs stay inputs). Everything upstream is
+// followed without recursion; a cycle is an error that tells its path; a node without a nodedef is an error.
+// White paper 2.4, steps 1 to 3.
+bool build(const doc::Document& document, doc::ElementId element, const doc::Definitions& definitions, Graph& graph,
+           Diagnostics& diagnostics);
+
+// As text, for --dump=graph.
+std::string print(const Graph& graph, const doc::Definitions& definitions);
+
+}  // namespace shaderx::graph
