@@ -1,0 +1,28 @@
+// GLSL 4.00 for a rasteriser: a vertex and a pixel stage that hosts bind by the names of the white paper's Figure 7.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+
+#include "base/diagnostics.h"
+#include "ir/module.h"
+#include "passes/stages.h"
+
+namespace shaderx::glsl {
+
+// Rewrites a function into what the language can say: scalars are spread over vectors where its built-in functions take
+// no scalar, roles of vectors are dropped, `known` is false. To be followed by `place`.
+void legalise(ir::Module& module, ir::Function& function);
+
+struct Sources {
+    std::string vertex, pixel;
+    // How the texts spell what hosts bind: uniforms and vertex inputs, by their names in the module.
+    std::unordered_map<Name, std::string> names;
+    std::string output;  // of the pixel stage
+};
+
+// Prints a legalised and placed module. What it cannot print is an internal error: that is the work of legalise.
+// `title` becomes the first comment of the pixel stage.
+Sources print(const ir::Module& module, const passes::ShaderInterface& interface, std::string_view title);
+
+}  // namespace shaderx::glsl

@@ -1,0 +1,238 @@
+#include <algorithm>
+#include <bit>
+
+#include <fmt/format.h>
+
+#include "base/diagnostics.h"
+#include "base/numbers.h"
+#include "targets/glsl/names.h"
+#include "targets/glsl/printer.h"
+
+namespace shaderx::glsl {
+
+using namespace ir;
+
+static constexpr int kPostfix = 15, kUnary = 14, kTernary = 1;
+
+static std::string number(Scalar scalar, std::uint32_t word) {
+    switch (scalar) {
+        case Scalar::Boolean:
+            return word ? "true" : "false";
+        case Scalar::Integer:
+            // The lowest integer has no literal of its own.
+            return word == 0x80000000u ? "(-2147483647 - 1)" : std::to_string(static_cast<int>(word));
+        case Scalar::Float: {
+            std::string s = formatFloat(std::bit_cast<float>(word));
+            if (s == "inf") return "uintBitsToFloat(0x7f800000u)";
+            if (s == "-inf") return "uintBitsToFloat(0xff800000u)";
+            if (s.find("nan") != std::string::npos) return "uintBitsToFloat(0x7fc00000u)";
+            if (s.find_first_of(".e") == std::string::npos) s += ".0";
+            return s;
+        }
+        case Scalar::None:
+            break;
+    }
+    internalError("a constant without components");
+}
+
+std::string constantText(Type type, const std::uint32_t* words) {
+    Scalar scalar = info(type).scalar;
+    int n = componentCount(type);
+    if (n == 1) return number(scalar, words[0]);
+    std::string out = std::string(typeName(type)) + "(";
+    bool same = !isMatrix(type) && std::all_of(words, words + n, [&](std::uint32_t w) { return w == words[0]; });
+    if (isMatrix(type)) {  // a diagonal of one number is written as that number
+        int rows = info(type).rows;
+        same = true;
+        for (int i = 0; i < n; i++) same = same && words[i] == (i % (rows + 1) ? 0 : words[0]);
+    }
+    for (int i = 0; i < (same ? 1 : n); i++) out += (i ? ", " : "") + number(scalar, words[i]);
+    return out + ")";
+}
+
+std::string FunctionPrinter::textOf(ExprId e, int precedence) {
+    std::string out;
+    write(out, e, precedence);
+    return out;
+}
+
+void FunctionPrinter::write(std::string& to, ExprId e, int precedence) {
+    if (!names_[e.index].empty()) {
+        to += names_[e.index];
+        return;
+    }
+    switch (f_[e].op) {
+        case Op::Constant:
+        case Op::Param:
+        case Op::Context:
+        case Op::Attribute:
+        case Op::Uniform:
+            writeLeaf(to, e);
+            return;
+        case Op::Retype:
+            write(to, f_.operand(e, 0), precedence);
+            return;  // a role, which the language has not
+        case Op::Swizzle:
+            writeSwizzle(to, e);
+            return;
+        case Op::TextureLevel:
+        case Op::TextureGrad:
+            writeTexture(to, e);
+            return;
+        default:
+            writeOperation(to, e, precedence);  // computes something
+    }
+}
+
+void FunctionPrinter::writeLeaf(std::string& to, ExprId e) {
+    const Expr& x = f_[e];
+    switch (x.op) {
+        case Op::Constant: {
+            ensure(componentCount(x.type) > 0, "a constant that has no text");
+            std::string text = constantText(x.type, f_.constantWords(e).data());
+            to += text;
+            return;
+        }
+        case Op::Param:
+            to += params_[x.payload];
+            return;
+        case Op::Context: {
+            const ContextInfo& c = info(static_cast<Context>(x.payload));
+            if (c.source == ContextSource::Vertex) to += "vd.";
+            to += c.host;
+            return;
+        }
+        case Op::Attribute: {
+            Name name(x.payload);
+            if (stage_.isPixel)
+                to += "vd." + stage_.members.at(name);
+            else
+                to += stage_.inputs.at(stage_.module.names->find(passes::inputName(stage_.module.names->text(name))));
+            return;
+        }
+        default:
+            to += stage_.globals.at(Name(x.payload));
+            return;  // a uniform
+    }
+}
+
+void FunctionPrinter::writeSwizzle(std::string& to, ExprId e) {
+    ExprId of = f_.operand(e, 0);
+    const Expr& x = f_[e];
+    if (isMatrix(f_[of].type)) {
+        write(to, of, kPostfix);
+        to += fmt::format("[{}]", x.payload);
+        return;
+    }
+    write(to, of, kPostfix);
+    to += '.';
+    for (int i = 0; i < swizzleCount(x.payload); i++) to += "xyzw"[swizzleAt(x.payload, i)];
+}
+
+// At the outermost level of the entry every pixel of a quad reads, so the language's own derivatives serve.
+void FunctionPrinter::writeTexture(std::string& to, ExprId e) {
+    auto o = f_.operandsOf(e);
+    bool implicit = f_[e].op == Op::TextureGrad && isEntry_ && stage_.isPixel && atEntryLevel_ &&
+                    f_[o[2]].op == Op::Ddx && f_.operand(o[2], 0) == o[1] && f_[o[3]].op == Op::Ddy &&
+                    f_.operand(o[3], 0) == o[1];
+    if (implicit)
+        writeCall(to, "texture", o.first(2));
+    else
+        writeCall(to, functionName(f_[e].op), o);
+}
+
+void FunctionPrinter::writeCall(std::string& to, std::string_view function, std::span<const ExprId> arguments) {
+    to += function;
+    to += '(';
+    for (std::size_t i = 0; i < arguments.size(); i++) {
+        if (i) to += ", ";
+        write(to, arguments[i], kTernary);
+    }
+    to += ')';
+}
+
+// Of one number the language makes a diagonal, the IR a matrix full of it.
+void FunctionPrinter::writeMake(std::string& to, ExprId e) {
+    Type type = f_[e].type;
+    auto o = f_.operandsOf(e);
+    std::vector<ExprId> parts(o.begin(), o.end());
+    if (isMatrix(type) && o.size() == 1 && isScalar(f_[o[0]].type))
+        parts.assign(static_cast<std::size_t>(componentCount(type)), o[0]);
+    writeCall(to, typeName(type), parts);
+}
+
+void FunctionPrinter::writeOperation(std::string& to, ExprId e, int precedence) {
+    const Expr& x = f_[e];
+    auto o = f_.operandsOf(e);
+    bool matrices = x.operandCount == 2 && isMatrix(f_[o[0]].type) && isMatrix(f_[o[1]].type);
+    if (x.op == Op::Mul && matrices) return writeCall(to, "matrixCompMult", o);
+    if (x.op == Op::Mod && info(x.type).scalar == Scalar::Float) return writeCall(to, "mod", o);
+    if (Operator op = operatorOf(x.op); op.precedence) {
+        if (op.precedence < precedence) to += '(';
+        write(to, o[0], op.precedence);
+        to += fmt::format(" {} ", op.text);
+        // Left to right: the right side of a - b or a / b keeps its brackets; sums and products need none.
+        bool associative = (x.op == Op::Add && f_[o[1]].op == Op::Add) || x.op == Op::And || x.op == Op::Or;
+        write(to, o[1], op.precedence + !associative);
+        if (op.precedence < precedence) to += ')';
+        return;
+    }
+    if (std::string_view function = functionName(x.op); !function.empty()) return writeCall(to, function, o);
+    switch (x.op) {
+        case Op::Neg:
+        case Op::Not:
+        case Op::BitNot: {
+            // -(-x) must not print as --x.
+            std::string inner = textOf(o[0], kUnary + 1);
+            if (kUnary < precedence) to += '(';
+            to += x.op == Op::Neg ? '-' : x.op == Op::Not ? '!' : '~';
+            to += inner[0] == '-' ? "(" + inner + ")" : inner;
+            if (kUnary < precedence) to += ')';
+            return;
+        }
+        case Op::Select:
+            if (kTernary < precedence) to += '(';
+            write(to, o[0], kTernary + 1);
+            to += " ? ";
+            write(to, o[1], kTernary + 1);
+            to += " : ";
+            write(to, o[2], kTernary);
+            if (kTernary < precedence) to += ')';
+            return;
+        case Op::ShiftRightLogical:
+            to += "int(uint(";
+            write(to, o[0]);
+            to += ") >> ";
+            write(to, o[1], 11);
+            to += ')';
+            return;
+        case Op::Make:
+            return writeMake(to, e);
+        case Op::Convert:
+            return writeCall(to, typeName(x.type), o);
+        case Op::Index:
+            write(to, o[0], kPostfix);
+            to += "[" + textOf(o[1]) + "]";
+            return;
+        case Op::TextureSize:
+            to += "vec2(textureSize(" + textOf(o[0]) + ", 0))";
+            return;
+        case Op::Call:
+            return writeCall(to, stage_.globals.at(Name(x.payload)), o);
+        default:
+            internalError(fmt::format("the printer met '{}', which legalise should have removed", info(x.op).name));
+    }
+}
+
+std::string FunctionPrinter::variableFor(ExprId e) {
+    if (Name hint = f_.hints[e.index] ? f_.hints[e.index] : asked_[e.index])
+        return stage_.namer.local(stage_.module.names->text(hint));
+    Type t = f_[e].type;
+    if (t == Type::Boolean) return stage_.namer.local("test");
+    if (t == Type::Integer) return stage_.namer.local("k");
+    if (isMatrix(t)) return stage_.namer.local("m");
+    constexpr std::string_view kByWidth[] = {"", "x", "p", "v", "q"};
+    return stage_.namer.local(kByWidth[std::min(componentCount(t), 4)]);
+}
+
+}  // namespace shaderx::glsl

@@ -1,0 +1,37 @@
+// Lines of text with indentation.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace shaderx::text {
+
+class Writer {
+  public:
+    // A whole line at the present depth; an empty one stays empty.
+    void line(std::string_view text = {}) {
+        if (!text.empty()) out_.append(static_cast<std::size_t>(depth_) * 4, ' ').append(text);
+        out_ += '\n';
+    }
+    void open(std::string_view text) {
+        line(text);
+        line("{");
+        depth_++;
+    }
+    void close(std::string_view text = "}") {
+        depth_--;
+        line(text);
+    }
+    // Sentences as line comments, wrapped at `width` characters.
+    void comment(std::string_view sentences, std::size_t width = 118);
+    // The first of some sentences: what a reader of generated text wants to know of a function.
+    static std::string_view firstSentence(std::string_view sentences);
+    std::string take() { return std::move(out_); }
+    int depth() const { return depth_; }
+
+  private:
+    std::string out_;
+    int depth_ = 0;
+};
+
+}  // namespace shaderx::text
