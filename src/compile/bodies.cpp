@@ -1,0 +1,212 @@
+#include "compile/bodies.h"
+
+#include <fmt/format.h>
+
+#include "ir/builder.h"
+
+namespace shaderx {
+
+using namespace ir;
+
+NodeBodies::NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries)
+    : names_(names), definitions_(definitions), libraries_(std::move(libraries)), made_(names_) {
+    for (Library* l : libraries_) {
+        documents_.push_back(&l->document());
+        made_.sources.push_back(l);
+    }
+}
+
+const LeafInfo* NodeBodies::findLeaf(Name name) {
+    for (const LeafInfo& l : made_.leaves)
+        if (l.name == name) return &l;
+    return nullptr;
+}
+
+Name NodeBodies::functionOf(doc::NodeDef def, Diagnostics& diagnostics) {
+    Name name = definitions_.row(def).name;
+    if (made_.find(name)) return name;
+    if (!underWay_.insert(name).second) {
+        doc::ElementRef element = definitions_.element(def);
+        Diagnostic& e = diagnostics.error(
+            "recursive-node", fmt::format("the implementation of '{}' uses the node itself", names_.text(name)));
+        e.where = element.document->locate(element.id);
+        e.path = element.document->path(element.id);
+        return {};
+    }
+    doc::Implementation implementation = definitions_.implementation(def);
+    std::size_t errors = diagnostics.errorCount();
+    bool ok = false;
+    if (implementation.kind == doc::Implementation::Kind::Graph) ok = fromGraph(def, implementation, diagnostics);
+    if (implementation.kind == doc::Implementation::Kind::Source) ok = fromSource(def, implementation, diagnostics);
+    underWay_.erase(name);
+    if (!ok && implementation && diagnostics.errorCount() == errors) {
+        doc::ElementRef element = implementation.element;
+        Diagnostic& e =
+            diagnostics.error("no-body", fmt::format("'{}' cannot be implemented like this", names_.text(name)));
+        e.where = element.document->locate(element.id);
+        e.path = element.document->path(element.id);
+    }
+    return ok ? name : Name();
+}
+
+bool NodeBodies::fromGraph(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics) {
+    graph::Graph g;
+    const doc::Document& d = *implementation.graph.document;
+    if (!graph::build(d, implementation.graph.id, definitions_, g, diagnostics)) return false;
+    return graph::lower(g, definitions_, *this, def, definitions_.row(def).name, {}, made_, diagnostics);
+}
+
+bool NodeBodies::fromSource(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics) {
+    doc::ElementRef element = implementation.element;
+    const doc::WellKnown& k = element.document->known();
+    auto text = [&](std::string_view attribute) { return element.attributeText(names_.intern(attribute)); };
+    if (std::string_view name = text("leaf"); !name.empty()) return leaf(def, name);
+    if (text("builder") == "attribute") return attribute(def);
+    if (Name code = element.attribute(k.sourcecode)) return inlineText(def, element, names_.text(code), diagnostics);
+    if (Name function = element.attribute(k.function)) return wrap(def, element, names_.text(function), diagnostics);
+    Diagnostic& e = diagnostics.error("no-body", "the implementation has neither source code nor a function");
+    e.where = element.document->locate(element.id);
+    e.path = element.document->path(element.id);
+    return false;
+}
+
+std::vector<sl::Signature> NodeBodies::known() const {
+    std::vector<sl::Signature> all;
+    for (Library* l : libraries_) all.insert(all.end(), l->signatures().begin(), l->signatures().end());
+    return all;
+}
+
+Function NodeBodies::start(doc::NodeDef def) const {
+    Function f;
+    f.name = definitions_.row(def).name;
+    f.isInline = true;
+    for (const doc::Port& p : definitions_.inputs(def)) f.params.push_back({p.name, typeNamed(names_.text(p.type))});
+    return f;
+}
+
+bool NodeBodies::inlineText(doc::NodeDef def, doc::ElementRef element, std::string_view text,
+                            Diagnostics& diagnostics) {
+    Function f = start(def);
+    std::vector<Param> results;
+    for (const doc::Port& p : definitions_.outputs(def)) results.push_back({p.name, typeNamed(names_.text(p.type))});
+    Location where = element.document->locate(element.id);
+    std::string file = fmt::format("{}:{}: {}", where.file, where.line, names_.text(element->name));
+    return sl::compileInline(made_, f.name, f.params, results, {file, text}, known(), diagnostics);
+}
+
+// A function of the library as the node's: parameters by position, converted where the types differ.
+bool NodeBodies::wrap(doc::NodeDef def, doc::ElementRef element, std::string_view function, Diagnostics& diagnostics) {
+    Function f = start(def);
+    const Function* callee = nullptr;
+    Builder b(made_, f);
+    auto outputs = definitions_.outputs(def);
+    auto fail = [&](std::string message) {
+        Diagnostic& e = diagnostics.error("bad-function", std::move(message));
+        e.where = element.document->locate(element.id);
+        e.path = element.document->path(element.id);
+        return false;
+    };
+    std::string problem = fmt::format("there is no function '{}'", function);
+    for (const sl::Signature& s : known()) {
+        if (names_.text(s.plainName) != function) continue;
+        problem = fmt::format("no function '{}' takes the inputs of '{}'", function, names_.text(f.name));
+        bool fits = s.params.size() == f.params.size() && (s.result != Type::Void) + s.outputs.size() == outputs.size();
+        for (std::size_t i = 0; fits && i < s.params.size(); i++)
+            fits = s.params[i].type == f.params[i].type ||
+                   (componentCount(s.params[i].type) == componentCount(f.params[i].type) &&
+                    componentCount(s.params[i].type) > 0);
+        if (fits) callee = made_.find(s.name);
+        if (callee) break;
+    }
+    if (!callee) return fail(problem);
+    std::vector<ExprId> arguments;
+    for (std::uint32_t i = 0; i < f.params.size(); i++)
+        arguments.push_back(b.convert(b.param(i), callee->params[i].type));
+    bool single = callee->results.size() == 1;
+    ExprId call = b.call(callee->name, single ? callee->results[0].type : Type::Tuple, arguments);
+    for (std::uint32_t k = 0; k < outputs.size(); k++) {
+        ExprId value = single ? call : b.result(call, k, callee->results[k].type);
+        value = b.convert(value, typeNamed(names_.text(outputs[k].type)));
+        if (!value)
+            return fail(
+                fmt::format("'{}' gives another type than the output '{}'", function, names_.text(outputs[k].name)));
+        b.addResult(outputs[k].name, value);
+    }
+    made_.put(std::move(f));
+    return true;
+}
+
+bool NodeBodies::leaf(doc::NodeDef def, std::string_view name) {
+    Function f = start(def);
+    Builder b(made_, f);
+    std::vector<ExprId> inputs;
+    for (std::uint32_t i = 0; i < f.params.size(); i++) inputs.push_back(b.param(i));
+    Name leafName = names_.intern(name);
+    if (!made_.leaf(leafName)) made_.leaves.push_back({leafName, f.params});
+    auto outputs = definitions_.outputs(def);
+    b.addResult(outputs[0].name, b.emit(Op::Leaf, typeNamed(names_.text(outputs[0].type)), inputs, leafName.index));
+    made_.put(std::move(f));
+    return true;
+}
+
+// texcoord and geomcolor by index, which picks one of the attributes; geompropvalue by name.
+bool NodeBodies::attribute(doc::NodeDef def) {
+    constexpr int kMostSets = 8;
+    Function f = start(def);
+    Builder b(made_, f);
+    std::string_view category = names_.text(definitions_.row(def).category);
+    auto outputs = definitions_.outputs(def);
+    Type type = typeNamed(names_.text(outputs[0].type));
+    bool texcoord = category == "texcoord", color = category == "geomcolor";
+    ExprId value;
+    if (texcoord || color) {
+        Type held = texcoord ? Type::Vector2 : Type::Color4;
+        for (int i = kMostSets; i-- > 0;) {
+            ExprId set = b.attribute(names_.intern(fmt::format("{}_{}", texcoord ? "texcoord" : "color", i)), held);
+            ExprId isSet = f.params.empty() ? b.boolean(i == 0) : b.op(Op::Equal, {b.param(0), b.integer(i)});
+            value = value ? b.select(isSet, set, value) : set;
+        }
+        if (type == Type::Vector3) value = b.make(type, {value, b.number(0)});
+        if (type == Type::Color3) value = b.swizzle(value, swizzleMask(3, 0, 1, 2));
+        if (type == Type::Float) value = b.component(value, 0);
+    } else {
+        // Geometry carries floats; a text on it is not known where pixels are computed.
+        bool whole = info(type).scalar == Scalar::Float;
+        if (componentCount(type) == 0 || f.params.empty())
+            value = b.null(type);
+        else
+            value = b.emit(Op::GeomProp, whole ? type : Type::Float, {b.param(0)});
+        if (!whole) value = b.convert(value, type);
+    }
+    if (b.type(value) != type) value = b.convert(value, type);
+    if (!value) return false;
+    b.addResult(outputs[0].name, value);
+    made_.put(std::move(f));
+    return true;
+}
+
+doc::NodeDef NodeBodies::nodeFor(std::string_view category, Type type) {
+    Name name = names_.find(category);
+    if (!name) return {};
+    for (doc::NodeDef def : definitions_.ofCategory(name))
+        if (typeNamed(names_.text(definitions_.row(def).output)) == type) return def;
+    return {};
+}
+
+doc::NodeDef NodeBodies::colorTransform(std::string_view from, std::string_view to, Type type) {
+    // Scene-referred names of the same primaries.
+    auto plain = [](std::string_view space) {
+        return space == "lin_rec709_scene" ? std::string_view("lin_rec709") : space;
+    };
+    return nodeFor(fmt::format("{}_to_{}", plain(from), plain(to)), type);
+}
+
+doc::ElementRef NodeBodies::geometricProperty(Name name) {
+    for (const doc::Document* d : documents_) {
+        doc::ElementId e = d->child(d->root(), names_.intern("geompropdef"), name);
+        if (e) return {d, e};
+    }
+    return {};
+}
+
+}  // namespace shaderx

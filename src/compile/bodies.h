@@ -1,0 +1,52 @@
+// Functions that implement nodes, found in libraries or made on demand.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+#include "compile/library.h"
+#include "graph/lower.h"
+
+namespace shaderx {
+
+// Makes the function of a nodedef, named as the nodedef, by the cheapest of its implementations: an inline expression,
+// a graph of nodes, a portable function, a closure leaf, or a builder of ours. Functions of precompiled libraries are
+// there already. What is made is kept for the next asking.
+class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
+  public:
+    NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries);
+
+    Name functionOf(doc::NodeDef def, Diagnostics& diagnostics) override;
+    bool takeName(Name name) override { return uniformNames_.insert(name).second; }
+    doc::NodeDef colorTransform(std::string_view from, std::string_view to, ir::Type type) override;
+    doc::ElementRef geometricProperty(Name name) override;
+    doc::NodeDef nodeFor(std::string_view category, ir::Type type) override;
+
+    const ir::Function* find(Name name) override { return made_.findOwn(name); }
+    const ir::LeafInfo* findLeaf(Name name) override;
+    const ir::Module& made() const { return made_; }
+    // Documents whose geometric properties count, beside those of the libraries.
+    void addDocument(const doc::Document& document) { documents_.push_back(&document); }
+
+  private:
+    bool fromSource(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics);
+    bool fromGraph(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics);
+    bool inlineText(doc::NodeDef def, doc::ElementRef element, std::string_view text, Diagnostics& diagnostics);
+    bool wrap(doc::NodeDef def, doc::ElementRef element, std::string_view function, Diagnostics& diagnostics);
+    bool leaf(doc::NodeDef def, std::string_view name);
+    bool attribute(doc::NodeDef def);
+    ir::Function start(doc::NodeDef def) const;
+    std::vector<sl::Signature> known() const;
+
+    NameTable& names_;
+    const doc::Definitions& definitions_;
+    std::vector<Library*> libraries_;
+    std::vector<const doc::Document*> documents_;
+    ir::Module made_;
+    std::unordered_set<Name> uniformNames_;
+    std::unordered_set<Name> underWay_;  // graphs that use themselves must not go on for ever
+};
+
+}  // namespace shaderx

@@ -1,0 +1,315 @@
+#include "compile/compile.h"
+
+#include <algorithm>
+#include <array>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+#include "compile/bodies.h"
+#include "compile/reflection.h"
+#include "doc/check.h"
+#include "doc/upgrade.h"
+#include "doc/write.h"
+#include "graph/graph.h"
+#include "ir/text.h"
+#include "ir/validate.h"
+#include "passes/place.h"
+#include "passes/prune.h"
+#include "passes/shade.h"
+#include "passes/specialise.h"
+#include "passes/stages.h"
+#include "passes/topology.h"
+#include "targets/glsl/glsl.h"
+
+namespace shaderx {
+
+static constexpr std::string_view kStages[] = {"read",  "check",     "graph", "lower",    "specialise",
+                                               "shade", "interface", "place", "legalise", "print"};
+
+std::string_view nameOf(StageName stage) { return kStages[static_cast<int>(stage)]; }
+
+bool stageNamed(std::string_view name, StageName& stage) {
+    for (std::size_t i = 0; i < std::size(kStages); i++)
+        if (kStages[i] == name) {
+            stage = static_cast<StageName>(i);
+            return true;
+        }
+    return false;
+}
+
+struct Compiler::State {
+    explicit State(std::span<const std::uint8_t> image) : names(namesOf(image)), builtin(openLibrary(names, image)) {}
+
+    std::vector<Library*> libraries() const {
+        std::vector<Library*> all;
+        for (std::size_t i = user.size(); i-- > 0;) all.push_back(user[i].get());
+        if (builtin) all.push_back(builtin.get());
+        return all;
+    }
+    doc::Definitions definitions(const doc::Document& document) const {
+        doc::Definitions all;
+        all.add(document);
+        for (Library* l : libraries()) all.add(l->document(), l->index());
+        return all;
+    }
+
+    NameTable names;
+    std::unique_ptr<Library> builtin;
+    std::vector<std::unique_ptr<Library>> user;
+};
+
+Compiler::Compiler(std::span<const std::uint8_t> libraryImage) : state_(std::make_unique<State>(libraryImage)) {}
+Compiler::~Compiler() = default;
+
+NameTable& Compiler::names() { return state_->names; }
+
+std::unique_ptr<doc::Document> Compiler::newDocument() { return std::make_unique<doc::Document>(state_->names); }
+
+// Runs a step of the public interface: a bug of ours becomes a diagnostic here.
+template <class F>
+static bool guarded(Diagnostics& diagnostics, std::string_view step, F&& run) {
+    try {
+        return run();
+    } catch (const InternalError& e) {
+        diagnostics.add(Severity::Internal, "internal", fmt::format("{}: {}", step, e.what()));
+    } catch (const std::bad_alloc&) {
+        diagnostics.error("out-of-memory", fmt::format("{}: not enough memory", step));
+    } catch (const std::exception& e) {
+        diagnostics.add(Severity::Internal, "internal", fmt::format("{}: {}", step, e.what()));
+    }
+    return false;
+}
+
+bool Compiler::addLibrary(std::vector<LibraryFile> files, Diagnostics& diagnostics) {
+    return guarded(diagnostics, "library", [&] {
+        std::vector<Library*> below = state_->libraries();
+        auto library = makeLibrary(state_->names, std::move(files), below, diagnostics);
+        if (!library) return false;
+        state_->user.push_back(std::move(library));
+        return true;
+    });
+}
+
+std::unique_ptr<doc::Document> Compiler::read(std::string_view file, std::string text, doc::Resolver& resolver,
+                                              Diagnostics& diagnostics) {
+    auto document = newDocument();
+    bool ok = guarded(diagnostics, "read", [&] {
+        if (!doc::read(*document, file, std::move(text), resolver, diagnostics)) return false;
+        doc::upgrade(*document, diagnostics);
+        return true;
+    });
+    return ok ? std::move(document) : nullptr;
+}
+
+bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics) {
+    return guarded(diagnostics, "check",
+                   [&] { return doc::validate(document, state_->definitions(document), diagnostics); });
+}
+
+std::vector<doc::ElementId> Compiler::renderableElements(const doc::Document& document) {
+    return doc::renderableElements(document);
+}
+
+namespace {
+
+// One element on its way to a shader. The stages in the order in which they run.
+struct Compilation {
+    const doc::Document& document;
+    doc::ElementId element;
+    const GenerateOptions& options;
+    Diagnostics& diagnostics;
+    NameTable& names;
+    const doc::Definitions& definitions;
+    NodeBodies& bodies;
+    ir::Module module;
+    graph::Graph graph{};
+    passes::ShaderInterface interface{};
+    Name pixel = names.intern("@pixel"), vertex = names.intern("@vertex");
+
+    bool run(Shader& shader) {
+        dumpDocument();
+        if (!makeGraph() || !lower() || !specialise() || !shade()) return false;
+        interface = passes::makeStages(module, pixel, vertex);
+        dump(StageName::Interface);
+        legalise();
+        place();
+        print(shader);
+        return true;
+    }
+
+    bool wants(StageName stage) const { return options.dumps && options.dumps->wants(stage); }
+
+    // Shows the program and, where asserts are on, proves that it keeps the rules of the IR.
+    void dump(StageName stage) {
+        if (wants(stage)) options.dumps->dump(stage, ir::print(module));
+#ifndef NDEBUG
+        Diagnostics broken;
+        if (!ir::validate(module, broken)) internalError(fmt::format("after {}:\n{}", nameOf(stage), broken.text()));
+#endif
+    }
+
+    void dumpDocument() {
+        if (wants(StageName::Read)) options.dumps->dump(StageName::Read, doc::write(document));
+        if (!wants(StageName::Check)) return;
+        Diagnostics found;
+        doc::validate(document, definitions, found);
+        options.dumps->dump(StageName::Check, found.all().empty() ? "no mistakes\n" : found.text());
+    }
+
+    bool refuse(std::string_view code, std::string message) {
+        Diagnostic& e = diagnostics.error(code, std::move(message));
+        e.where = document.locate(element);
+        e.path = document.path(element);
+        return false;
+    }
+
+    // A material none of whose shaders is connected.
+    bool isEmptyMaterial() const {
+        const graph::Output& output = graph.outputs[0];
+        if (output.type != ir::Type::Material || output.source.kind != graph::Source::Kind::Node) return false;
+        for (const graph::Input& input : graph.inputsOf(graph.nodes[output.source.node.index]))
+            if (ir::isClosure(input.type) && input.source.kind == graph::Source::Kind::Node) return false;
+        return true;
+    }
+
+    bool makeGraph() {
+        Diagnostics own;
+        bool built = graph::build(document, element, definitions, graph, own);
+        if ((!built || !graph.isExact) && !explain()) return false;
+        for (const Diagnostic& d : own.all()) diagnostics.add(d.severity, d.code, d.message) = d;
+        if (!built) return false;
+        if (graph.outputs.empty()) return refuse("no-output", "the element has no output to compute");
+        if (isEmptyMaterial()) return refuse("no-shader", "the material has no shader");
+        graph.outputs.resize(1);
+        if (wants(StageName::Graph)) options.dumps->dump(StageName::Graph, graph::print(graph, definitions));
+        return true;
+    }
+
+    // What is wrong with the nodes upstream: the check of the document tells it best, and all of it. True if it has
+    // nothing to say.
+    bool explain() {
+        Diagnostics found;
+        doc::validate(document, definitions, found);
+        std::unordered_set<std::string> upstream;
+        for (doc::ElementId node : graph.visited) upstream.insert(document.path(node));
+        std::size_t errors = diagnostics.errorCount();
+        for (const Diagnostic& d : found.all()) {
+            std::string owner = d.path.substr(0, std::min(d.path.size(), d.path.rfind('/')));
+            bool concerns = upstream.count(d.path) || upstream.count(owner);
+            if (concerns && d.severity != Severity::Warning) diagnostics.add(d.severity, d.code, d.message) = d;
+        }
+        return diagnostics.errorCount() == errors;
+    }
+
+    bool lower() {
+        graph::LowerOptions how;
+        how.interface = options.interface;
+        std::string_view space = document.attributeText(document.root(), document.known().colorspace);
+        if (!space.empty()) how.targetColorSpace = space;
+        bool ok = graph::lower(graph, definitions, bodies, {}, pixel, how, module, diagnostics);
+        // Textures inside of nodes that graphs implement.
+        const std::vector<ir::Uniform>& inside = bodies.made().uniforms;
+        module.uniforms.insert(module.uniforms.end(), inside.begin(), inside.end());
+        if (ok) dump(StageName::Lower);
+        return ok;
+    }
+
+    bool specialise() {
+        bool ok = passes::specialise(module, pixel, {}, diagnostics);
+        if (ok && options.interface == Interface::Live) {
+            std::unordered_set<Name> baked = passes::topologyUniforms(module, *module.findOwn(pixel));
+            ok = baked.empty() || passes::specialise(module, pixel, baked, diagnostics);
+        }
+        if (!ok) return false;
+        passes::prune(module, std::array{pixel});
+        dump(StageName::Specialise);
+        return true;
+    }
+
+    bool shade() {
+        std::string_view port = names.text(graph.outputs[0].name);
+        bool isShader = ir::isClosure(graph.outputs[0].type);
+        Name output = names.intern(isShader || port == "out" || port.empty() ? "out1" : port);
+        if (!passes::shade(module, pixel, output, diagnostics)) return false;
+        if (!passes::specialise(module, pixel, {}, diagnostics)) return false;
+        passes::prune(module, std::array{pixel});
+        dump(StageName::Shade);
+        return true;
+    }
+
+    void legalise() {
+        for (auto& f : module.functions) glsl::legalise(module, *f);
+        dump(StageName::Legalise);
+    }
+
+    void place() {
+        for (auto& f : module.functions) {
+            passes::PlaceOptions how;
+            how.isEntry = f->name == pixel;
+            how.names = &names;
+            passes::place(*f, how);
+        }
+        dump(StageName::Place);
+    }
+
+    void print(Shader& shader) {
+        std::string title = document.path(element);
+        glsl::Sources sources = glsl::print(module, interface, title);
+        shader.element = document.path(element);
+        shader.vertex = std::move(sources.vertex);
+        shader.pixel = std::move(sources.pixel);
+        shader.reflection = reflect(module, interface, shader.element, sources.names, sources.output);
+        for (Name name : interface.pixelUniforms.uniforms)
+            if (const ir::Uniform* u = module.uniform(name); u && u->type == ir::Type::Texture2D)
+                shader.textures.push_back({sources.names.at(u->name), u->file, u->uAddress, u->vAddress, u->filter,
+                                           u->defaultColor, u->path});
+        if (wants(StageName::Print)) options.dumps->dump(StageName::Print, shader.vertex + "\n" + shader.pixel);
+        module.sources.clear();  // nothing is left to look up, and what they point to goes
+        shader.program = std::make_shared<const Program>(Program{std::move(module), std::move(interface)});
+    }
+};
+
+}  // namespace
+
+Result<Shader> Compiler::generate(const doc::Document& document, doc::ElementId element, const GenerateOptions& options,
+                                  Diagnostics& diagnostics) {
+    Shader shader;
+    bool ok = guarded(diagnostics, fmt::format("generating '{}'", document.path(element)), [&] {
+        doc::Definitions definitions = state_->definitions(document);
+        NodeBodies bodies(state_->names, definitions, state_->libraries());
+        bodies.addDocument(document);
+        Compilation c{document,      element,     options, diagnostics,
+                      state_->names, definitions, bodies,  ir::Module(state_->names)};
+        c.module.sources.push_back(&bodies);
+        for (Library* l : state_->libraries()) c.module.sources.push_back(l);
+        return c.run(shader);
+    });
+    if (!ok) return Failure{};
+    return shader;
+}
+
+std::vector<std::uint8_t> packLibrary(std::vector<LibraryFile> files, Diagnostics& diagnostics) {
+    std::vector<std::uint8_t> image;
+    guarded(diagnostics, "library", [&] {
+        NameTable names;
+        auto library = makeLibrary(names, std::move(files), {}, diagnostics);
+        if (!library) return false;
+        doc::Definitions definitions;
+        definitions.add(library->document(), library->index());
+        bool valid = doc::validate(library->document(), definitions, diagnostics);
+        NodeBodies bodies(names, definitions, {library.get()});
+        for (const doc::NodeDefRow& row : library->index().nodedefs)
+            if (doc::NodeDef def = definitions.byName(row.name); definitions.implementation(def))
+                valid = bodies.functionOf(def, diagnostics) && valid;
+        if (!valid) return false;
+        std::vector<const ir::Function*> functions = library->functions();
+        for (const auto& f : bodies.made().functions) functions.push_back(f.get());
+        std::sort(functions.begin(), functions.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
+        image = writeImage(*library, library->signatures(), functions, bodies.made().leaves, names);
+        return true;
+    });
+    return image;
+}
+
+}  // namespace shaderx

@@ -1,0 +1,116 @@
+// ShaderX: a compiler for materials. This is its public interface.
+//
+//     shaderx::Compiler compiler(shaderx::builtinLibrary());
+//     shaderx::Diagnostics diagnostics;
+//     auto document = compiler.newDocument();                       // or compiler.read("gold.mtlx", text, …)
+//     auto shader = document->append(document->root(), "standard_surface", "gold");
+//     document->set(shader, "type", "surfaceshader");
+//     auto metalness = document->append(shader, "input", "metalness");
+//     document->set(metalness, "type", "float");
+//     document->set(metalness, "value", "1");
+//     auto generated = compiler.generate(*document, shader, {}, diagnostics);
+//     if (generated) use(generated->vertex, generated->pixel);
+//     else           std::fputs(diagnostics.text().c_str(), stderr);
+//
+// There is no global state: compilers do not know of each other. One compiler serves one thread. Nothing is thrown.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/diagnostics.h"
+#include "base/result.h"
+#include "compile/library.h"
+#include "doc/document.h"
+#include "doc/read.h"
+#include "graph/lower.h"
+#include "passes/stages.h"
+
+namespace shaderx {
+
+using graph::Interface;
+
+// The stages of a compilation, in order; see docs/pipeline.md.
+enum class StageName : std::uint8_t { Read, Check, Graph, Lower, Specialise, Shade, Interface, Place, Legalise, Print };
+std::string_view nameOf(StageName stage);
+bool stageNamed(std::string_view name, StageName& stage);
+
+// Receives the program as text after each stage that it asks for.
+class DumpSink {
+  public:
+    virtual ~DumpSink() = default;
+    virtual bool wants(StageName stage) = 0;
+    virtual void dump(StageName stage, const std::string& text) = 0;
+};
+
+struct GenerateOptions {
+    Interface interface = Interface::Live;
+    DumpSink* dumps = nullptr;
+};
+
+// A texture that a shader reads, and how.
+struct TextureBinding {
+    std::string uniform;  // the sampler
+    std::string file;     // as the document says it, prefixes included, relative to the document; may be empty
+    std::string uAddress, vAddress, filter;
+    std::vector<float> defaultColor;
+    std::string path;  // of the input in the document
+};
+
+// The program behind a shader's text, for whoever runs it on the CPU: legalised and placed, the entry functions named
+// in the interface. It refers to the compiler's names and must not outlive the compiler.
+struct Program {
+    ir::Module module;
+    passes::ShaderInterface interface;
+};
+
+struct Shader {
+    std::string element;        // its path in the document
+    std::string vertex, pixel;  // source texts
+    std::string reflection;     // JSON: uniforms, inputs, samplers; see docs/pipeline.md
+    std::vector<TextureBinding> textures;
+    std::shared_ptr<const Program> program;
+};
+
+// The image of the project's own node library.
+std::span<const std::uint8_t> builtinLibrary();
+
+class Compiler {
+  public:
+    // A compiler whose nodes are those of a library's image; an empty one gives a compiler without nodes.
+    explicit Compiler(std::span<const std::uint8_t> libraryImage);
+    ~Compiler();
+    Compiler(const Compiler&) = delete;
+    Compiler& operator=(const Compiler&) = delete;
+
+    // Adds a user's library from the texts of its files; it goes before those added earlier.
+    bool addLibrary(std::vector<LibraryFile> files, Diagnostics& diagnostics);
+
+    NameTable& names();
+    // An empty document.
+    std::unique_ptr<doc::Document> newDocument();
+    // Reads a document and what it includes, and brings it to the current version. Null after errors.
+    std::unique_ptr<doc::Document> read(std::string_view file, std::string text, doc::Resolver& resolver,
+                                        Diagnostics& diagnostics);
+    // Reports every mistake of a document.
+    bool validate(const doc::Document& document, Diagnostics& diagnostics);
+    // What can be rendered: materials, or the outputs of a document without any.
+    std::vector<doc::ElementId> renderableElements(const doc::Document& document);
+    // Compiles what is upstream of an element: an output, a node, a nodegraph, a shader or a material. Errors anywhere
+    // else in the document do not matter.
+    Result<Shader> generate(const doc::Document& document, doc::ElementId element, const GenerateOptions& options,
+                            Diagnostics& diagnostics);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// Makes a library's image from its files, for Compiler's constructor. Empty after errors.
+std::vector<std::uint8_t> packLibrary(std::vector<LibraryFile> files, Diagnostics& diagnostics);
+
+}  // namespace shaderx

@@ -1,0 +1,87 @@
+#include "compile/library.h"
+
+#include <algorithm>
+#include <map>
+
+#include "doc/read.h"
+
+namespace shaderx {
+
+namespace {
+
+// The files of the library itself are what its includes may name.
+struct OwnFiles final : doc::Resolver {
+    std::map<std::string, std::string, std::less<>> texts;
+    std::optional<doc::ResolvedFile> resolve(std::string_view href, std::string_view) override {
+        auto it = texts.find(href);
+        if (it == texts.end()) return {};
+        return doc::ResolvedFile{it->first, {}, it->second};
+    }
+};
+
+bool endsWith(std::string_view text, std::string_view end) {
+    return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
+}
+
+class TextLibrary final : public Library {
+  public:
+    explicit TextLibrary(NameTable& names) : document_(names), module_(names) {}
+
+    bool load(std::vector<LibraryFile> files, std::span<Library* const> below, Diagnostics& diagnostics) {
+        std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+        std::size_t errors = diagnostics.errorCount();
+        OwnFiles own;
+        std::string root =
+            "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n";
+        for (const LibraryFile& f : files)
+            if (endsWith(f.name, ".mtlx")) {
+                own.texts[f.name] = f.text;
+                std::string escaped;
+                for (char c : f.name)
+                    escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+                root += "<xi:include href=\"" + escaped + "\"/>\n";
+            }
+        root += "</materialx>\n";
+        auto read = doc::read(document_, "library", std::move(root), own, diagnostics);
+        (void)read;  // every error is in the diagnostics
+        tables_ = doc::buildIndex(document_);
+        std::vector<sl::SourceFile> sources;
+        for (const LibraryFile& f : files)
+            if (endsWith(f.name, ".sl")) sources.push_back({f.name, f.text});
+        std::vector<sl::Signature> known;
+        for (Library* l : below) {
+            module_.sources.push_back(l);
+            known.insert(known.end(), l->signatures().begin(), l->signatures().end());
+        }
+        sl::compile(module_, sources, known, signatures_, diagnostics);
+        return diagnostics.errorCount() == errors;
+    }
+
+    const doc::Document& document() const override { return document_; }
+    doc::DefinitionsIndex index() const override { return tables_.index(); }
+    const std::vector<sl::Signature>& signatures() override { return signatures_; }
+    const ir::Function* find(Name name) override { return module_.findOwn(name); }
+    const ir::LeafInfo* findLeaf(Name) override { return nullptr; }
+    std::vector<const ir::Function*> functions() const override {
+        std::vector<const ir::Function*> all;
+        for (const auto& f : module_.functions) all.push_back(f.get());
+        return all;
+    }
+
+  private:
+    doc::Document document_;
+    doc::DefinitionsTables tables_;
+    ir::Module module_;
+    std::vector<sl::Signature> signatures_;
+};
+
+}  // namespace
+
+std::unique_ptr<Library> makeLibrary(NameTable& names, std::vector<LibraryFile> files, std::span<Library* const> below,
+                                     Diagnostics& diagnostics) {
+    auto library = std::make_unique<TextLibrary>(names);
+    if (!library->load(std::move(files), below, diagnostics)) return nullptr;
+    return library;
+}
+
+}  // namespace shaderx
