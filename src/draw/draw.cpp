@@ -1,0 +1,455 @@
+#include "draw/draw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "draw/driver.h"
+#include "draw/textures.h"
+#include "scene/picture.h"
+#include "scene/sky.h"
+#include "scene/sphere.h"
+
+namespace shaderx::draw {
+
+using image::Image;
+
+namespace {
+
+// The environment in the driver's memory.
+struct EnvironmentMaps {
+    Bound radiance, irradiance;
+    int levels = 0;
+
+    EnvironmentMaps() = default;
+    EnvironmentMaps(const scene::Environment& environment, TextureSet& textures)
+        : radiance(textures.addMap(environment.radiance, true)),
+          irradiance(textures.addMap(environment.irradiance, false)) {
+        for (int side = std::max(environment.radiance.width, environment.radiance.height); side > 0; side /= 2)
+            levels++;
+    }
+};
+
+// The sphere in the driver's memory.
+struct Geometry {
+    const Gl& gl;
+    GLuint buffers[7] = {};  // positions, normals, tangents, bitangents, texcoords, colors, triangles
+    GLsizei indexCount = 0;
+
+    Geometry(const Gl& driver, const scene::Mesh& mesh)
+        : gl(driver), indexCount(static_cast<GLsizei>(mesh.triangles.size())) {
+        gl.genBuffers(7, buffers);
+        const std::vector<float>* const arrays[] = {&mesh.positions,  &mesh.normals,   &mesh.tangents,
+                                                    &mesh.bitangents, &mesh.texcoords, &mesh.colors};
+        for (std::size_t i = 0; i < 6; i++) fill(buffers[i], arrays[i]->data(), arrays[i]->size() * sizeof(float));
+        fill(buffers[6], mesh.triangles.data(), mesh.triangles.size() * sizeof(unsigned));
+    }
+    ~Geometry() { gl.deleteBuffers(7, buffers); }
+    Geometry(const Geometry&) = delete;
+    Geometry& operator=(const Geometry&) = delete;
+
+    void fill(GLuint buffer, const void* data, std::size_t size) const {
+        gl.bindBuffer(GL_ARRAY_BUFFER, buffer);
+        gl.bufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(size), data, GL_STATIC_DRAW);
+    }
+};
+
+// An active uniform of a linked program.
+struct Uniform {
+    GLint location = -1;
+    GLenum type = 0;
+    GLint count = 1;  // of an array's elements
+};
+
+// How many components a uniform type has, and of which kind; 0 for what is not a value.
+struct Shape {
+    int components = 0;
+    enum class Kind : std::uint8_t { Float, Integer, Matrix } kind = Kind::Float;
+};
+
+Shape shapeOf(GLenum type) {
+    switch (type) {
+        case GL_FLOAT:
+            return {1, Shape::Kind::Float};
+        case GL_FLOAT_VEC2:
+            return {2, Shape::Kind::Float};
+        case GL_FLOAT_VEC3:
+            return {3, Shape::Kind::Float};
+        case GL_FLOAT_VEC4:
+            return {4, Shape::Kind::Float};
+        case GL_INT:
+        case GL_BOOL:
+            return {1, Shape::Kind::Integer};
+        case GL_INT_VEC2:
+        case GL_BOOL_VEC2:
+            return {2, Shape::Kind::Integer};
+        case GL_INT_VEC3:
+        case GL_BOOL_VEC3:
+            return {3, Shape::Kind::Integer};
+        case GL_INT_VEC4:
+        case GL_BOOL_VEC4:
+            return {4, Shape::Kind::Integer};
+        case GL_FLOAT_MAT3:
+            return {9, Shape::Kind::Matrix};
+        case GL_FLOAT_MAT4:
+            return {16, Shape::Kind::Matrix};
+        default:
+            return {};
+    }
+}
+
+// Draws one job; owns what the job needs of the driver.
+struct Renderer {
+    const Gl& gl;
+    const Geometry& geometry;
+    const Job& job;
+    Diagnostics& diagnostics;
+    EnvironmentMaps environment;
+    int side;  // of the picture that is drawn: size × supersampling
+
+    TextureSet textures{gl};
+    GLuint program = 0, vertexArray = 0, framebuffer = 0, colour = 0, depth = 0;
+    std::map<std::string, Uniform> uniforms{};  // arrays without their "[0]"
+
+    ~Renderer();
+    bool run(Image& out);
+    GLuint compile(GLenum stage, const std::string& text, const char* name);
+    bool link();
+    void rejected(const std::string& what, const std::string& log);
+    void listUniforms();
+    void set(const std::string& name, const std::vector<float>& values, bool byUser = false);
+    void setUniforms();
+    void bindTextures();
+    Bound textureOf(const std::string& uniform);
+    void bindAttributes();
+    bool makeTarget();
+};
+
+Renderer::~Renderer() {
+    gl.bindFramebuffer(GL_FRAMEBUFFER, 0);
+    gl.useProgram(0);
+    gl.bindVertexArray(0);
+    gl.deleteProgram(program);
+    gl.deleteVertexArrays(1, &vertexArray);
+    gl.deleteFramebuffers(1, &framebuffer);
+    gl.deleteTextures(1, &colour);
+    gl.deleteRenderbuffers(1, &depth);
+}
+
+void Renderer::rejected(const std::string& what, const std::string& log) {
+    Diagnostic& d = diagnostics.error("driver-rejected", "the driver rejected " + what);
+    constexpr std::size_t kMaxLines = 40;
+    for (std::size_t at = 0; at < log.size() && d.notes.size() < kMaxLines;) {
+        const std::size_t end = std::min(log.find('\n', at), log.size());
+        if (end > at) d.notes.emplace_back().message = log.substr(at, end - at);
+        at = end + 1;
+    }
+}
+
+GLuint Renderer::compile(GLenum stage, const std::string& text, const char* name) {
+    const GLuint shader = gl.createShader(stage);
+    const GLchar* start = text.c_str();
+    const GLint length = static_cast<GLint>(text.size());
+    gl.shaderSource(shader, 1, &start, &length);
+    gl.compileShader(shader);
+    GLint ok = 0, logLength = 0;
+    gl.getShaderiv(shader, GL_COMPILE_STATUS, &ok);
+    if (ok) return shader;
+    gl.getShaderiv(shader, GL_INFO_LOG_LENGTH, &logLength);
+    std::string log(static_cast<std::size_t>(std::max(logLength, 1)), '\0');
+    gl.getShaderInfoLog(shader, logLength, &logLength, log.data());
+    log.resize(static_cast<std::size_t>(logLength));
+    rejected(fmt::format("the {} shader", name), log);
+    gl.deleteShader(shader);
+    return 0;
+}
+
+bool Renderer::link() {
+    const GLuint vertex = compile(GL_VERTEX_SHADER, job.vertex, "vertex");
+    const GLuint pixel = compile(GL_FRAGMENT_SHADER, job.pixel, "pixel");
+    program = gl.createProgram();
+    GLint ok = vertex && pixel, logLength = 0;
+    if (ok) {
+        gl.attachShader(program, vertex);
+        gl.attachShader(program, pixel);
+        gl.linkProgram(program);
+        gl.getProgramiv(program, GL_LINK_STATUS, &ok);
+        if (!ok) {
+            gl.getProgramiv(program, GL_INFO_LOG_LENGTH, &logLength);
+            std::string log(static_cast<std::size_t>(std::max(logLength, 1)), '\0');
+            gl.getProgramInfoLog(program, logLength, &logLength, log.data());
+            log.resize(static_cast<std::size_t>(logLength));
+            rejected("the vertex and pixel shaders together", log);
+        }
+    }
+    if (vertex) gl.deleteShader(vertex);
+    if (pixel) gl.deleteShader(pixel);
+    return ok != 0;
+}
+
+void Renderer::listUniforms() {
+    GLint count = 0, longest = 0, blocks = 0;
+    gl.getProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
+    gl.getProgramiv(program, GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
+    gl.getProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
+    if (blocks > 0) diagnostics.warning("unbound-block", "the shader has uniform blocks, which are not filled");
+    std::string buffer(static_cast<std::size_t>(longest) + 1, '\0');
+    for (GLint i = 0; i < count; i++) {
+        Uniform uniform;
+        GLsizei length = 0;
+        gl.getActiveUniform(program, static_cast<GLuint>(i), static_cast<GLsizei>(buffer.size()), &length,
+                            &uniform.count, &uniform.type, buffer.data());
+        std::string name = buffer.substr(0, static_cast<std::size_t>(length));
+        uniform.location = gl.getUniformLocation(program, name.c_str());
+        if (uniform.location < 0) continue;  // in a block, or the driver's own
+        if (name.ends_with("[0]")) name.resize(name.size() - 3);
+        uniforms[name] = uniform;
+    }
+}
+
+// Sets a uniform if the shader has it. What the user names and the shader lacks, or cannot hold, is a warning.
+void Renderer::set(const std::string& name, const std::vector<float>& values, bool byUser) {
+    const auto found = uniforms.find(name.ends_with("[0]") ? name.substr(0, name.size() - 3) : name);
+    if (found == uniforms.end()) {
+        if (byUser) diagnostics.warning("unused-uniform", fmt::format("the shader does not use a uniform '{}'", name));
+        return;
+    }
+    const Uniform& uniform = found->second;
+    const Shape shape = shapeOf(uniform.type);
+    const std::size_t components = static_cast<std::size_t>(shape.components);
+    if (components == 0 || values.empty() || values.size() % components != 0 ||
+        values.size() / components > static_cast<std::size_t>(uniform.count)) {
+        if (byUser)
+            diagnostics.warning(
+                "bad-uniform-value",
+                fmt::format("the uniform '{}' cannot hold {} values; it keeps its own", name, values.size()));
+        return;
+    }
+    const GLsizei n = static_cast<GLsizei>(values.size() / components);
+    const GLint at = uniform.location;
+    if (shape.kind == Shape::Kind::Matrix) {
+        (components == 9 ? gl.uniformMatrix3fv : gl.uniformMatrix4fv)(at, n, GL_FALSE, values.data());
+    } else if (shape.kind == Shape::Kind::Float) {
+        const PFNGLUNIFORM1FVPROC setters[] = {gl.uniform1fv, gl.uniform2fv, gl.uniform3fv, gl.uniform4fv};
+        setters[components - 1](at, n, values.data());
+    } else {
+        std::vector<GLint> rounded;
+        for (const float v : values)
+            rounded.push_back(
+                std::isnan(v) ? 0 : static_cast<GLint>(std::round(std::clamp(v, -2147483520.f, 2147483520.f))));
+        const PFNGLUNIFORM1IVPROC setters[] = {gl.uniform1iv, gl.uniform2iv, gl.uniform3iv, gl.uniform4iv};
+        setters[components - 1](at, n, rounded.data());
+    }
+}
+
+void Renderer::setUniforms() {
+    for (const scene::NamedMatrix& m : scene::sceneMatrices()) set(m.uniform, {m.value.begin(), m.value.end()});
+    set("u_viewPosition", {0, 0, scene::kEyeDistance});
+    set("u_viewDirection", {0, 0, -1});
+    set("u_envRadianceMips", {static_cast<float>(environment.levels)});
+    set("u_envRadianceSamples", {static_cast<float>(std::max(job.samples, 0))});
+    set("u_envLightIntensity", {1});
+    set("u_numActiveLightSources", {0});
+    for (const UniformValue& value : job.uniforms) set(value.name, value.values, true);
+}
+
+Bound Renderer::textureOf(const std::string& uniform) {
+    if (uniform == "u_envRadiance") return environment.radiance;
+    if (uniform == "u_envIrradiance") return environment.irradiance;
+    for (const Texture& texture : job.textures)
+        if (texture.uniform == uniform) return textures.addMaterial(texture, diagnostics);
+    diagnostics.warning("unbound-sampler",
+                        fmt::format("no picture is given for the sampler '{}': white is drawn", uniform));
+    return textures.addColour({1, 1, 1, 1});
+}
+
+void Renderer::bindTextures() {
+    std::vector<Bound> units;
+    for (const auto& [name, uniform] : uniforms) {
+        if (uniform.type == GL_SAMPLER_2D) {
+            const std::vector<GLint> unit(static_cast<std::size_t>(uniform.count), static_cast<GLint>(units.size()));
+            gl.uniform1iv(uniform.location, uniform.count, unit.data());
+            units.push_back(textureOf(name));
+        } else if (shapeOf(uniform.type).components == 0) {
+            diagnostics.warning("unbound-sampler",
+                                fmt::format("the uniform '{}' is of a type that is not bound", name));
+        }
+    }
+    for (std::size_t i = 0; i < units.size(); i++) {
+        gl.activeTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
+        gl.bindTexture(GL_TEXTURE_2D, units[i].texture);
+        gl.bindSampler(static_cast<GLuint>(i), units[i].sampler);
+    }
+    gl.activeTexture(GL_TEXTURE0);
+}
+
+void Renderer::bindAttributes() {
+    struct Known {
+        const char* prefix;
+        int buffer, components;
+    };
+    static constexpr Known kKnown[] = {{"i_position", 0, 3},  {"i_normal", 1, 3},   {"i_tangent", 2, 3},
+                                       {"i_bitangent", 3, 3}, {"i_texcoord", 4, 2}, {"i_color", 5, 4}};
+    gl.genVertexArrays(1, &vertexArray);
+    gl.bindVertexArray(vertexArray);
+    GLint count = 0, longest = 0;
+    gl.getProgramiv(program, GL_ACTIVE_ATTRIBUTES, &count);
+    gl.getProgramiv(program, GL_ACTIVE_ATTRIBUTE_MAX_LENGTH, &longest);
+    std::string buffer(static_cast<std::size_t>(longest) + 1, '\0');
+    for (GLint i = 0; i < count; i++) {
+        GLsizei length = 0;
+        GLint elements = 0;
+        GLenum type = 0;
+        gl.getActiveAttrib(program, static_cast<GLuint>(i), static_cast<GLsizei>(buffer.size()), &length, &elements,
+                           &type, buffer.data());
+        const std::string name = buffer.substr(0, static_cast<std::size_t>(length));
+        const GLint location = gl.getAttribLocation(program, name.c_str());
+        if (location < 0) continue;  // built in, such as gl_VertexID
+        const Known* known = std::find_if(std::begin(kKnown), std::end(kKnown),
+                                          [&](const Known& k) { return name.starts_with(k.prefix); });
+        if (known == std::end(kKnown)) {
+            diagnostics.warning("unbound-attribute",
+                                fmt::format("the sphere has no attribute '{}': it reads as 0", name));
+            continue;
+        }
+        gl.bindBuffer(GL_ARRAY_BUFFER, geometry.buffers[known->buffer]);
+        gl.enableVertexAttribArray(static_cast<GLuint>(location));
+        gl.vertexAttribPointer(static_cast<GLuint>(location), known->components, GL_FLOAT, GL_FALSE, 0, nullptr);
+    }
+    gl.bindBuffer(GL_ELEMENT_ARRAY_BUFFER, geometry.buffers[6]);
+}
+
+bool Renderer::makeTarget() {
+    gl.genFramebuffers(1, &framebuffer);
+    gl.bindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.genTextures(1, &colour);
+    gl.bindTexture(GL_TEXTURE_2D, colour);
+    gl.texImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, side, side, 0, GL_RGBA, GL_FLOAT, nullptr);
+    gl.texParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+    gl.framebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour, 0);
+    gl.genRenderbuffers(1, &depth);
+    gl.bindRenderbuffer(GL_RENDERBUFFER, depth);
+    gl.renderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT24, side, side);
+    gl.framebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
+    return gl.checkFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+// Bottom row first, as the driver gives it.
+bool Renderer::run(Image& out) {
+    if (!link()) return false;
+    gl.useProgram(program);
+    listUniforms();
+    if (!makeTarget()) {
+        diagnostics.error("driver-error", fmt::format("the driver gives no picture of {0}×{0} pixels", side));
+        return false;
+    }
+    setUniforms();
+    bindTextures();
+    bindAttributes();
+    gl.viewport(0, 0, side, side);
+    gl.enable(GL_DEPTH_TEST);
+    gl.enable(GL_CULL_FACE);
+    gl.frontFace(GL_CCW);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl.drawElements(GL_TRIANGLES, geometry.indexCount, GL_UNSIGNED_INT, nullptr);
+    out = Image::ofFloats(side, side, 4);
+    gl.readPixels(0, 0, side, side, GL_RGBA, GL_FLOAT, out.floats.data());
+    const GLenum error = gl.getError();
+    if (error != GL_NO_ERROR)
+        diagnostics.error("driver-error", fmt::format("the driver failed while drawing, with code {:#06x}", error));
+    return error == GL_NO_ERROR;
+}
+
+}  // namespace
+
+struct Context::State {
+    std::unique_ptr<Driver> driver;
+    std::unique_ptr<Geometry> geometry;
+    std::unique_ptr<TextureSet> textures;
+    EnvironmentMaps sky;  // made when the first job asks for it
+
+    Result<Image> render(const Job& job, Diagnostics& diagnostics);
+
+    ~State() {
+        driver->makeCurrent();
+        textures.reset();
+        geometry.reset();
+    }
+};
+
+Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Context::~Context() = default;
+
+std::unique_ptr<Context> Context::create(Diagnostics& diagnostics) {
+    std::unique_ptr<Driver> driver = Driver::open(diagnostics);
+    if (!driver) return nullptr;
+    const Gl& gl = driver->gl;
+    auto geometry = std::make_unique<Geometry>(gl, scene::makeSphere(128, 64));
+    auto textures = std::make_unique<TextureSet>(gl);
+    std::unique_ptr<State> state(new State{std::move(driver), std::move(geometry), std::move(textures), {}});
+    return std::unique_ptr<Context>(new Context(std::move(state)));
+}
+
+const std::string& Context::renderer() const { return state_->driver->renderer; }
+
+Result<Image> Context::render(const Job& job, Diagnostics& diagnostics) {
+    try {
+        return state_->render(job, diagnostics);
+    } catch (const std::bad_alloc&) {
+        diagnostics.error("bad-size", fmt::format("a picture of {0}×{0} pixels does not fit into memory", job.size));
+        return Failure{};
+    }
+}
+
+Result<Image> Context::State::render(const Job& job, Diagnostics& diagnostics) {
+    const Gl& gl = driver->gl;
+    if (!driver->makeCurrent()) {
+        diagnostics.error("driver-error", "the driver's context cannot be made current");
+        return Failure{};
+    }
+    GLint maxTexture = 0, maxBuffer = 0;
+    gl.getIntegerv(GL_MAX_TEXTURE_SIZE, &maxTexture);
+    gl.getIntegerv(GL_MAX_RENDERBUFFER_SIZE, &maxBuffer);
+    const int factor = scene::supersampling(job), maxSide = std::min(maxTexture, maxBuffer);
+    if (job.size < 1 || factor > maxSide || job.size > maxSide / factor) {
+        diagnostics.error("bad-size", fmt::format("a picture of {0}×{0} pixels from {1}×{1} samples each is not drawn: "
+                                                  "the driver takes 1 to {2} a side",
+                                                  job.size, factor, maxSide));
+        return Failure{};
+    }
+    Renderer renderer{gl, *geometry, job, diagnostics, {}, job.size * factor};
+    if (!job.environment.empty()) {
+        const Result<scene::Environment> loaded = scene::loadEnvironment(job.environment, maxTexture, diagnostics);
+        if (!loaded) return Failure{};
+        renderer.environment = EnvironmentMaps(*loaded, renderer.textures);
+    } else {
+        if (!sky.levels) sky = EnvironmentMaps(scene::builtInSky(), *textures);
+        renderer.environment = sky;
+    }
+    Image drawn;
+    if (!renderer.run(drawn)) return Failure{};
+    return flipped(factor == 1 ? drawn : scene::reduced(drawn, factor));
+}
+
+bool Context::draw(const Job& job, Diagnostics& diagnostics) {
+    if (!scene::checkOutput(job, diagnostics)) return false;
+    const Result<Image> picture = render(job, diagnostics);
+    return picture && scene::writePicture(job, *picture, diagnostics);
+}
+
+Result<Image> render(const Job& job, Diagnostics& diagnostics) {
+    const std::unique_ptr<Context> context = Context::create(diagnostics);
+    if (!context) return Failure{};
+    return context->render(job, diagnostics);
+}
+
+bool draw(const Job& job, Diagnostics& diagnostics) {
+    const std::unique_ptr<Context> context = Context::create(diagnostics);
+    return context && context->draw(job, diagnostics);
+}
+
+}  // namespace shaderx::draw

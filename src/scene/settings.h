@@ -1,0 +1,38 @@
+// What is to be drawn, but for the material's program.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace shaderx::scene {
+
+// The picture behind one sampler uniform of a material.
+struct Texture {
+    std::string uniform;
+    std::string file;                                          // a path as it can be opened; empty: the default colour
+    std::string uAddress = "periodic", vAddress = "periodic";  // constant (default colour), clamp, periodic, mirror
+    std::string filter = "linear";                             // closest, linear, cubic (drawn as linear)
+    float defaultColor[4] = {0, 0, 0, 0};
+    std::string documentPath;  // of the node, for messages
+};
+
+// Replaces the value a uniform would have: as many values as it has components (matrices column by column), or a
+// multiple of it for an array. Integers and booleans are rounded. `u_lightData[0].intensity` is a name too.
+struct UniformValue {
+    std::string name;
+    std::vector<float> values;
+};
+
+struct Settings {
+    std::vector<Texture> textures;
+    int size = 512;           // pixels a side
+    int samples = 1024;       // u_envRadianceSamples
+    std::string environment;  // latitude-longitude picture of radiance; empty: the built-in sky
+    float exposure = 0;       // in stops, for .png only
+    std::string output;       // .png (sRGB), .exr or .pfm (linear)
+    std::vector<UniformValue> uniforms;
+    // Pixels are averaged from supersample × supersample drawn ones. 0: 2 for a .png that stays cheap, otherwise 1.
+    int supersample = 0;
+};
+
+}  // namespace shaderx::scene
