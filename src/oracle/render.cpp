@@ -1,0 +1,488 @@
+#include "oracle/render.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <new>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "ir/interpret_wide.h"
+#include "oracle/raster.h"
+#include "oracle/texture.h"
+#include "scene/picture.h"
+#include "scene/sky.h"
+#include "scene/sphere.h"
+
+namespace shaderx::oracle {
+
+using image::Image;
+using ir::Context;
+using ir::ContextSource;
+using ir::kLanes;
+using ir::LaneMask;
+using ir::LaneWords;
+using ir::Type;
+using ir::Value;
+
+namespace {
+
+constexpr int kMaxSide = 16384;
+
+// What all lanes of all runs see alike.
+struct World {
+    std::map<Context, Value> contexts;
+    std::map<Name, Value> uniforms;  // that the job sets
+    std::map<Context, std::shared_ptr<const Texture>> maps;
+    std::map<Name, std::shared_ptr<const Texture>> textures;
+
+    const Texture* texture(const ir::TextureRef& ref) const {
+        if (ref.kind == ir::TextureRef::Kind::Context) {
+            const auto found = maps.find(ref.context);
+            return found == maps.end() ? nullptr : found->second.get();
+        }
+        if (ref.kind != ir::TextureRef::Kind::Uniform) return nullptr;
+        const auto found = textures.find(ref.uniform);
+        return found == textures.end() ? nullptr : found->second.get();
+    }
+};
+
+// What is the same in both stages: the host's values and the textures.
+struct StageEnvironment : ir::WideEnvironment {
+    const World& world;
+    explicit StageEnvironment(const World& w) : world(w) {}
+
+    bool context(Context c, Value& v) override {
+        const auto found = world.contexts.find(c);
+        if (found == world.contexts.end()) return false;
+        std::copy(std::begin(found->second.words), std::end(found->second.words), v.words);
+        return true;
+    }
+    bool uniform(Name name, Value& v) override {
+        const auto found = world.uniforms.find(name);
+        if (found == world.uniforms.end()) return false;
+        v = found->second;
+        return true;
+    }
+    bool texture(const ir::WideTextureRead& read, std::span<LaneWords> channels) override {
+        const Texture* texture = world.texture(read.texture);
+        for (LaneMask left = read.lanes; left; left &= left - 1) {
+            const std::size_t lane = static_cast<std::size_t>(std::countr_zero(left));
+            Colour colour{};
+            if (texture) colour = texture->at(read.uv[0].f(lane), read.uv[1].f(lane), levelAt(*texture, read, lane));
+            for (std::size_t c = 0; c < channels.size(); c++) channels[c].set(lane, colour[c]);
+        }
+        return true;
+    }
+    bool textureSize(const ir::TextureRef& ref, Value& v) override {
+        const Texture* texture = world.texture(ref);
+        v.set(0, texture ? static_cast<float>(texture->width()) : 1);
+        v.set(1, texture ? static_cast<float>(texture->height()) : 1);
+        return true;
+    }
+
+    // A quad has one level of detail, that of its first pixel.
+    static float levelAt(const Texture& texture, const ir::WideTextureRead& read, std::size_t lane) {
+        if (!read.hasGradients) return read.level->f(lane);
+        const std::size_t first = lane & ~std::size_t{3};
+        const float ddx[2] = {read.ddx[0].f(first), read.ddx[1].f(first)};
+        const float ddy[2] = {read.ddy[0].f(first), read.ddy[1].f(first)};
+        return texture.levelOf(ddx, ddy);
+    }
+};
+
+// ---- The vertex stage ----
+
+// A named array of the mesh.
+struct MeshArray {
+    std::string_view prefix;  // of the names that hosts bind
+    const std::vector<float>* values;
+    std::size_t components;
+};
+
+struct VertexEnvironment final : StageEnvironment {
+    const ir::Module& module;
+    std::vector<MeshArray> arrays;
+    std::size_t first = 0;  // vertex of lane 0
+
+    VertexEnvironment(const World& w, const ir::Module& m, const scene::Mesh& mesh)
+        : StageEnvironment(w),
+          module(m),
+          arrays{{"i_position", &mesh.positions, 3}, {"i_normal", &mesh.normals, 3},
+                 {"i_tangent", &mesh.tangents, 3},   {"i_bitangent", &mesh.bitangents, 3},
+                 {"i_texcoord", &mesh.texcoords, 2}, {"i_color", &mesh.colors, 4}} {}
+
+    const MeshArray* find(std::string_view host) const {
+        for (const MeshArray& a : arrays)
+            if (host.starts_with(a.prefix)) return &a;
+        return nullptr;
+    }
+    // As OpenGL fills up attributes: with (0, 0, 0, 1). What the mesh lacks reads as that, too.
+    bool fill(std::string_view host, std::span<LaneWords> words) const {
+        const MeshArray* a = find(host);
+        for (std::size_t c = 0; c < words.size(); c++)
+            for (std::size_t lane = 0; lane < kLanes; lane++) {
+                const std::size_t n = a ? a->components : 0, at = (first + lane) * n + c;
+                const float usual = c == 3 ? 1.0f : 0.0f;
+                words[c].set(lane, c < n && at < a->values->size() ? (*a->values)[at] : usual);
+            }
+        return true;
+    }
+    bool varying(Context c, Type, std::span<LaneWords> words) override { return fill(ir::info(c).host, words); }
+    bool attribute(Name name, Type, std::span<LaneWords> words) override {
+        return fill(passes::inputName(module.names->text(name)), words);
+    }
+};
+
+// Results of the vertex stage: positions, and for each varying its components one after the other.
+struct Vertices {
+    std::vector<Position> positions;
+    struct Array {
+        std::size_t components = 0;
+        std::vector<float> values;
+    };
+    std::vector<Array> varyings;
+};
+
+bool runVertices(const RenderJob& job, const World& world, const scene::Mesh& mesh, Vertices& out,
+                 Diagnostics& diagnostics) {
+    const ir::Function* f = job.module->findOwn(job.interface->vertex);
+    const Result<ir::WideProgram> program = ir::WideProgram::prepare(*job.module, *f, diagnostics);
+    if (!program) return false;
+    ir::WideInterpreter interpreter(*program);
+    VertexEnvironment environment(world, *job.module, mesh);
+    for (const passes::VertexInput& input : job.interface->inputs) {
+        const std::string_view name = job.module->names->text(input.name);
+        if (!environment.find(name))
+            diagnostics.warning("unbound-attribute",
+                                fmt::format("the sphere has no attribute '{}': it reads as 0", name));
+    }
+    std::size_t words = 0;
+    for (const ir::ResultValue& r : f->results) words += static_cast<std::size_t>(ir::componentCount(r.type));
+    const std::size_t count = mesh.positions.size() / 3;
+    out.positions.resize(count);
+    for (std::size_t k = 1; k < f->results.size(); k++) {
+        const std::size_t n = static_cast<std::size_t>(ir::componentCount(f->results[k].type));
+        out.varyings.push_back({n, std::vector<float>(n * count)});
+    }
+    std::vector<LaneWords> results(words);
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        environment.first = first;
+        if (!interpreter.run(~LaneMask{0}, {}, results, environment, diagnostics)) return false;
+        for (std::size_t lane = 0; lane < kLanes && first + lane < count; lane++) {
+            for (std::size_t c = 0; c < 4; c++) out.positions[first + lane][c] = results[c].f(lane);
+            std::size_t at = 4;
+            for (Vertices::Array& a : out.varyings)
+                for (std::size_t c = 0; c < a.components; c++)
+                    a.values[(first + lane) * a.components + c] = results[at++].f(lane);
+        }
+    }
+    return true;
+}
+
+// ---- The pixel stage ----
+
+// A pixel that is shaded, where the picture shows it or because its quad needs it.
+struct Fragment {
+    std::uint32_t triangle = 0;
+    int x = 0, y = 0;
+    bool shown = false;
+};
+
+struct PixelEnvironment final : StageEnvironment {
+    const RenderJob& job;
+    const scene::Mesh& mesh;
+    const Vertices& vertices;
+    std::array<const unsigned*, kLanes> corners = {};  // by lane: the triangle's
+    std::array<std::array<float, 3>, kLanes> weights = {};
+
+    PixelEnvironment(const World& w, const RenderJob& j, const scene::Mesh& m, const Vertices& v)
+        : StageEnvironment(w), job(j), mesh(m), vertices(v) {}
+
+    void place(std::span<const Fragment> fragments, int side) {
+        for (std::size_t lane = 0; lane < kLanes; lane++) {
+            const Fragment& f = fragments[std::min(lane, fragments.size() - 1)];
+            corners[lane] = &mesh.triangles[f.triangle * std::size_t{3}];
+            const unsigned* c = corners[lane];
+            weights[lane] = Weights(vertices.positions[c[0]], vertices.positions[c[1]], vertices.positions[c[2]], side)
+                                .at(f.x, f.y);
+        }
+    }
+    bool interpolate(Name name, std::span<LaneWords> words) const {
+        const auto& varyings = job.interface->varyings;
+        std::size_t k = 0;
+        while (k < varyings.size() && varyings[k].name != name) k++;
+        if (k == varyings.size() || vertices.varyings[k].components != words.size()) return false;
+        const Vertices::Array& a = vertices.varyings[k];
+        for (std::size_t c = 0; c < words.size(); c++)
+            for (std::size_t lane = 0; lane < kLanes; lane++) {
+                float sum = 0;
+                for (std::size_t i = 0; i < 3; i++)
+                    sum += weights[lane][i] * a.values[corners[lane][i] * a.components + c];
+                words[c].set(lane, sum);
+            }
+        return true;
+    }
+    bool varying(Context c, Type, std::span<LaneWords> words) override {
+        return interpolate(job.module->names->find(ir::info(c).host), words);
+    }
+    bool attribute(Name name, Type, std::span<LaneWords> words) override { return interpolate(name, words); }
+};
+
+std::vector<Fragment> fragmentsOf(std::span<const Quad> quads, bool whole) {
+    std::vector<Fragment> out;
+    for (const Quad& q : quads)
+        for (int i = 0; i < 4; i++) {
+            const bool shown = (q.covered >> i & 1) != 0;
+            if (shown || whole) out.push_back({q.triangle, q.x + (i & 1), q.y + (i >> 1), shown});
+        }
+    return out;
+}
+
+// All fragments, 64 at a time, by as many threads as asked for. Each batch writes pixels of its own.
+struct PixelStage {
+    const RenderJob& job;
+    const World& world;
+    const scene::Mesh& mesh;
+    const Vertices& vertices;
+    const ir::WideProgram& program;
+    std::vector<Fragment> fragments;
+    int side;
+    Image& out;
+
+    std::atomic<std::size_t> next{0};
+    std::atomic<bool> failed{false};
+
+    std::size_t batches() const { return (fragments.size() + kLanes - 1) / kLanes; }
+
+    bool shade(std::size_t batch, ir::WideInterpreter& interpreter, PixelEnvironment& environment,
+               Diagnostics& diagnostics) const {
+        const std::size_t first = batch * kLanes, n = std::min(kLanes, fragments.size() - first);
+        const std::span<const Fragment> some(&fragments[first], n);
+        environment.place(some, side);
+        std::array<LaneWords, 4> results;
+        const LaneMask mask = n == kLanes ? ~LaneMask{0} : (LaneMask{1} << n) - 1;
+        if (!interpreter.run(mask, {}, results, environment, diagnostics)) return false;
+        for (std::size_t lane = 0; lane < n; lane++) {
+            if (!some[lane].shown) continue;
+            float* pixel = &out.floats[out.index(some[lane].x, side - 1 - some[lane].y, 0)];
+            for (std::size_t c = 0; c < 4; c++) pixel[c] = results[c].f(lane);
+        }
+        return true;
+    }
+
+    void work(Diagnostics& diagnostics) {
+        ir::WideInterpreter interpreter(program, {.maxSteps = std::uint64_t{1} << 40});
+        PixelEnvironment environment(world, job, mesh, vertices);
+        while (!failed) {
+            const std::size_t batch = next++;
+            if (batch >= batches()) return;
+            if (!shade(batch, interpreter, environment, diagnostics)) failed = true;
+        }
+    }
+
+    bool run(Diagnostics& diagnostics) {
+        const unsigned hardware = std::max(std::thread::hardware_concurrency(), 1u);
+        const std::size_t wanted = job.threads > 0 ? static_cast<std::size_t>(job.threads) : hardware;
+        const std::size_t count = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(batches(), 1));
+        std::vector<Diagnostics> found(count);
+        std::vector<std::thread> threads;
+        for (std::size_t i = 1; i < count; i++) threads.emplace_back([this, &found, i] { work(found[i]); });
+        work(found[0]);
+        for (std::thread& t : threads) t.join();
+        for (const Diagnostics& d : found) {
+            if (!d.hasErrors()) continue;
+            for (const Diagnostic& one : d.all()) diagnostics.add(one.severity, one.code, one.message) = one;
+            break;
+        }
+        return !failed;
+    }
+};
+
+// ---- The host's side ----
+
+struct Host {
+    const RenderJob& job;
+    Diagnostics& diagnostics;
+    World world = {};
+    std::map<std::string, std::shared_ptr<const Image>> files = {};  // null: cannot be read
+
+    static Value valueOf(Type type, std::span<const float> values) {
+        Value v;
+        v.type = type;
+        for (std::size_t i = 0; i < values.size(); i++) {
+            const float rounded = std::round(std::clamp(values[i], -2147483520.f, 2147483520.f));
+            if (ir::info(type).scalar == ir::Scalar::Float)
+                v.set(static_cast<int>(i), values[i]);
+            else
+                v.words[i] = std::isnan(values[i]) ? 0 : static_cast<std::uint32_t>(static_cast<std::int32_t>(rounded));
+            if (type == Type::Boolean) v.words[i] = v.words[i] != 0;
+        }
+        return v;
+    }
+
+    void set(Context c, std::span<const float> values) { world.contexts[c] = valueOf(ir::info(c).type, values); }
+
+    void setContexts(int levels) {
+        for (int i = 0; i < ir::kContexts; i++) {
+            const Context c = static_cast<Context>(i);
+            if (ir::info(c).source != ContextSource::Uniform) continue;
+            const std::vector<std::uint32_t> usual = passes::defaultOf(c);
+            Value& v = world.contexts[c];
+            v.type = ir::info(c).type;
+            std::copy(usual.begin(), usual.end(), v.words);
+            for (const scene::NamedMatrix& m : scene::sceneMatrices())
+                if (m.uniform == ir::info(c).host) set(c, m.value);
+        }
+        set(Context::ViewPosition, std::array{0.0f, 0.0f, scene::kEyeDistance});
+        set(Context::ViewDirection, std::array{0.0f, 0.0f, -1.0f});
+        set(Context::EnvironmentMips, std::array{static_cast<float>(levels)});
+        set(Context::EnvironmentSamples, std::array{static_cast<float>(std::max(job.samples, 0))});
+        set(Context::EnvironmentIntensity, std::array{1.0f});
+        set(Context::ActiveLights, std::array{0.0f});
+    }
+
+    bool fits(const scene::UniformValue& value, Type type) {
+        if (value.values.size() == static_cast<std::size_t>(ir::componentCount(type))) return true;
+        diagnostics.warning("bad-uniform-value", fmt::format("the uniform '{}' cannot hold {} values; it keeps its own",
+                                                             value.name, value.values.size()));
+        return false;
+    }
+
+    void setUniforms() {
+        std::set<Context> contexts;
+        std::set<Name> uniforms;
+        for (const passes::StageUniforms* stage : {&job.interface->vertexUniforms, &job.interface->pixelUniforms}) {
+            contexts.insert(stage->contexts.begin(), stage->contexts.end());
+            uniforms.insert(stage->uniforms.begin(), stage->uniforms.end());
+        }
+        for (const scene::UniformValue& value : job.uniforms) {
+            bool isUsed = false;
+            for (Context c : contexts)
+                if (ir::info(c).source == ContextSource::Uniform && ir::info(c).host == value.name) {
+                    isUsed = true;
+                    if (fits(value, ir::info(c).type)) set(c, value.values);
+                }
+            for (const ir::Uniform& u : job.module->uniforms)
+                if (uniforms.count(u.name) && job.module->names->text(u.name) == value.name) {
+                    isUsed = true;
+                    if (fits(value, u.type)) world.uniforms[u.name] = valueOf(u.type, value.values);
+                }
+            if (!isUsed)
+                diagnostics.warning("unused-uniform",
+                                    fmt::format("the shader does not use a uniform '{}'", value.name));
+        }
+    }
+
+    const Image* pictureOf(const scene::Texture& texture) {
+        if (texture.file.empty()) return nullptr;
+        const auto known = files.find(texture.file);
+        if (known != files.end()) return known->second.get();
+        Diagnostics reading;
+        const Result<Image> picture = image::readImage(texture.file, reading);
+        if (!picture)
+            for (const Diagnostic& d : reading.all()) {
+                Diagnostic& warning =
+                    diagnostics.warning("missing-texture", d.message + "; the node's default colour is drawn");
+                warning.where = d.where;
+                warning.path = texture.documentPath;
+            }
+        return (files[texture.file] = picture ? std::make_shared<const Image>(flipped(*picture)) : nullptr).get();
+    }
+
+    static std::shared_ptr<const Texture> plain(const float (&rgba)[4]) {
+        Image one = Image::ofFloats(1, 1, 4);
+        std::copy(std::begin(rgba), std::end(rgba), one.floats.begin());
+        return std::make_shared<const Texture>(one, false, Sampling{});
+    }
+
+    std::shared_ptr<const Texture> textureOf(const scene::Texture& texture) {
+        const Image* picture = pictureOf(texture);
+        if (!picture) return plain(texture.defaultColor);
+        Sampling sampling{
+            addressNamed(texture.uAddress), addressNamed(texture.vAddress), texture.filter == "closest", {}};
+        std::copy(std::begin(texture.defaultColor), std::end(texture.defaultColor), sampling.border.begin());
+        return std::make_shared<const Texture>(*picture, true, sampling);
+    }
+
+    void loadTextures() {
+        for (Name name : job.interface->pixelUniforms.uniforms) {
+            const ir::Uniform* uniform = job.module->uniform(name);
+            if (!uniform || uniform->type != Type::Texture2D) continue;
+            const std::string text(job.module->names->text(name));
+            const auto given = std::find_if(job.textures.begin(), job.textures.end(),
+                                            [&](const scene::Texture& t) { return t.uniform == text; });
+            if (given != job.textures.end()) {
+                world.textures[name] = textureOf(*given);
+                continue;
+            }
+            diagnostics.warning("unbound-sampler",
+                                fmt::format("no picture is given for the sampler '{}': white is drawn", text));
+            world.textures[name] = plain({1, 1, 1, 1});
+        }
+    }
+
+    bool makeWorld() {
+        const Result<scene::Environment> sky = job.environment.empty()
+                                                   ? Result<scene::Environment>(scene::builtInSky())
+                                                   : scene::loadEnvironment(job.environment, kMaxSide, diagnostics);
+        if (!sky) return false;
+        const auto radiance = std::make_shared<const Texture>(sky->radiance, true, Sampling{});
+        world.maps[Context::EnvironmentRadiance] = radiance;
+        world.maps[Context::EnvironmentIrradiance] =
+            std::make_shared<const Texture>(sky->irradiance, false, Sampling{});
+        setContexts(radiance->levels());
+        setUniforms();
+        loadTextures();
+        return true;
+    }
+
+    Result<Image> run() {
+        const int factor = scene::supersampling(job);
+        if (job.size < 1 || factor > kMaxSide || job.size > kMaxSide / factor) {
+            diagnostics.error("bad-size", fmt::format("a picture of {0}×{0} pixels from {1}×{1} samples each is not "
+                                                      "drawn: 1 to {2} a side are",
+                                                      job.size, factor, kMaxSide));
+            return Failure{};
+        }
+        const int side = job.size * factor;
+        if (!makeWorld()) return Failure{};
+        const scene::Mesh mesh = scene::makeSphere(128, 64);
+        Vertices vertices;
+        if (!runVertices(job, world, mesh, vertices, diagnostics)) return Failure{};
+        const ir::Function* pixel = job.module->findOwn(job.interface->pixel);
+        const Result<ir::WideProgram> program = ir::WideProgram::prepare(*job.module, *pixel, diagnostics);
+        if (!program) return Failure{};
+        Image out = Image::ofFloats(side, side, 4);
+        const std::vector<Quad> quads = rasterise(vertices.positions, mesh.triangles, side);
+        PixelStage stage{job,  world, mesh, vertices, *program, fragmentsOf(quads, program->takesDerivatives()),
+                         side, out};
+        if (!stage.run(diagnostics)) return Failure{};
+        return factor == 1 ? std::move(out) : scene::reduced(out, factor);
+    }
+};
+
+}  // namespace
+
+Result<Image> render(const RenderJob& job, Diagnostics& diagnostics) {
+    try {
+        return Host{job, diagnostics}.run();
+    } catch (const std::bad_alloc&) {
+        diagnostics.error("bad-size", fmt::format("a picture of {0}×{0} pixels does not fit into memory", job.size));
+        return Failure{};
+    }
+}
+
+bool draw(const RenderJob& job, Diagnostics& diagnostics) {
+    if (!scene::checkOutput(job, diagnostics)) return false;
+    const Result<Image> picture = render(job, diagnostics);
+    return picture && scene::writePicture(job, *picture, diagnostics);
+}
+
+}  // namespace shaderx::oracle
