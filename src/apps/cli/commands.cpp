@@ -1,0 +1,239 @@
+#include "apps/cli/commands.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include <unistd.h>
+
+#include "apps/cli/files.h"
+#include "compile/compile.h"
+#include "doc/file_resolver.h"
+#include "draw/loader.h"
+#include "oracle/loader.h"
+
+namespace shaderx::cli {
+
+namespace {
+
+// The dump that was asked for, on standard output.
+struct PrintDump final : DumpSink {
+    StageName stage{};
+    bool active = false;
+    bool wants(StageName s) override { return active && s == stage; }
+    void dump(StageName, const std::string& text) override { std::fputs(text.c_str(), stdout); }
+};
+
+// A diagnostic's first line, its kind in colour on a terminal.
+void print(const Diagnostic& d) {
+    std::string text = format(d);
+    static const bool colour = isatty(2) && !std::getenv("NO_COLOR");
+    if (colour) {
+        const char* word = d.severity == Severity::Warning ? "warning:" : "error:";
+        if (std::size_t at = text.find(word); at != std::string::npos) {
+            text.insert(at + std::string_view(word).size(), "\033[0m");
+            text.insert(at, d.severity == Severity::Warning ? "\033[1;35m" : "\033[1;31m");
+        }
+    }
+    std::fputs(text.c_str(), stderr);
+}
+
+// A run of the program: its compiler, and how it went so far.
+struct Session {
+    const Options& options;
+    Compiler compiler{builtinLibrary()};
+    PrintDump dumps{};
+    bool failed = false, bug = false;
+
+    // Prints what was found; what the step returned and errors decide the exit code.
+    bool report(const Diagnostics& diagnostics, const std::string& replay = {}) {
+        for (const Diagnostic& d : diagnostics.all()) print(d);
+        if (diagnostics.hasInternal()) {
+            bug = true;
+            if (!replay.empty()) std::fprintf(stderr, "  replay: shaderx %s\n", replay.c_str());
+        }
+        failed = failed || diagnostics.hasErrors();
+        return !diagnostics.hasErrors();
+    }
+
+    int exitCode() const { return bug ? kOurBug : failed ? kInputErrors : kDone; }
+
+    bool start() {
+        Diagnostics diagnostics;
+        for (const std::string& folder : options.libraries) {
+            std::vector<LibraryFile> files;
+            if (readLibrary(folder, files, diagnostics)) compiler.addLibrary(std::move(files), diagnostics);
+        }
+        dumps.active = !options.dump.empty();
+        if (dumps.active && !stageNamed(options.dump, dumps.stage)) {
+            std::fprintf(stderr, "shaderx: there is no stage '%s'\n", options.dump.c_str());
+            return false;
+        }
+        return report(diagnostics);
+    }
+
+    std::unique_ptr<doc::Document> read(const std::string& file) {
+        Diagnostics diagnostics;
+        std::string text;
+        std::unique_ptr<doc::Document> document;
+        doc::FileResolver resolver(options.paths);
+        if (readInput(file, text, diagnostics)) document = compiler.read(file, std::move(text), resolver, diagnostics);
+        report(diagnostics, "validate " + file);
+        return document;
+    }
+
+    // The elements that are asked for.
+    std::vector<doc::ElementId> elements(const std::string& file, const doc::Document& document) {
+        Diagnostics diagnostics;
+        std::vector<doc::ElementId> found;
+        if (options.element.empty()) {
+            found = compiler.renderableElements(document);
+            if (found.empty())
+                diagnostics.error("nothing-to-render", "the document has no material and no output").where.file = file;
+        } else if (doc::ElementId e = document.find(options.element)) {
+            found.push_back(e);
+        } else {
+            diagnostics.error("unknown-element", "there is no element '" + options.element + "'").where.file = file;
+        }
+        report(diagnostics);
+        return found;
+    }
+
+    Result<Shader> shaderOf(const std::string& file, const doc::Document& document, doc::ElementId element) {
+        Diagnostics diagnostics;
+        GenerateOptions how;
+        how.interface =
+            options.interface == "baked" || options.interface == "reduced" ? Interface::Baked : Interface::Live;
+        how.dumps = &dumps;
+        Result<Shader> shader = compiler.generate(document, element, how, diagnostics);
+        report(diagnostics,
+               "generate " + file + " --interface " + options.interface + " --element " + document.path(element));
+        return shader;
+    }
+
+    void write(const std::string& stem, const Shader& shader) {
+        Diagnostics diagnostics;
+        if (options.out == "-") {
+            writeFile("-", shader.vertex + "\n" + shader.pixel, diagnostics);
+        } else {
+            std::string base = (std::filesystem::path(options.out) / stem).string();
+            bool ok = writeFile(base + ".vert", shader.vertex, diagnostics) &&
+                      writeFile(base + ".frag", shader.pixel, diagnostics) &&
+                      writeFile(base + ".json", shader.reflection, diagnostics);
+            if (!ok)
+                for (const char* end : {".vert", ".frag", ".json"}) std::remove((base + end).c_str());
+        }
+        report(diagnostics);
+    }
+};
+
+// An element to compile, and the name of its files.
+struct Work {
+    const std::string& file;
+    const doc::Document* document;
+    doc::ElementId element;
+    std::string stem;
+};
+
+}  // namespace
+
+int generate(const Options& options) {
+    Session s{options};
+    if (!s.start()) return s.failed || s.bug ? s.exitCode() : kBadUsage;
+    bool writes = options.dump.empty();
+    if (writes && options.out != "-") {
+        Diagnostics diagnostics;
+        if (!makeFolder(options.out, diagnostics) && !s.report(diagnostics)) return kInputErrors;
+    }
+    // Two elements of one file name are an error for both, so all names are known before anything is written.
+    std::vector<std::unique_ptr<doc::Document>> documents;
+    std::vector<Work> work;
+    std::map<std::string, int> names;
+    for (const std::string& file : options.files) {
+        documents.push_back(s.read(file));
+        if (!documents.back()) continue;
+        for (doc::ElementId e : s.elements(file, *documents.back())) {
+            std::string stem = stemOf(file) + "." + fileNameOf(documents.back()->path(e));
+            names[stem]++;
+            work.push_back({file, documents.back().get(), e, std::move(stem)});
+        }
+    }
+    for (const Work& w : work) {
+        if (writes && options.out != "-" && names[w.stem] > 1) {
+            Diagnostics diagnostics;
+            Diagnostic& e =
+                diagnostics.error("file-name-clash", "another element would be written to '" + w.stem + "' too");
+            e.where = w.document->locate(w.element);
+            e.path = w.document->path(w.element);
+            s.report(diagnostics);
+        } else if (Result<Shader> shader = s.shaderOf(w.file, *w.document, w.element); shader && writes) {
+            s.write(w.stem, *shader);
+        }
+    }
+    return s.exitCode();
+}
+
+int validate(const Options& options) {
+    Session s{options};
+    if (!s.start()) return s.exitCode();
+    for (const std::string& file : options.files) {
+        std::unique_ptr<doc::Document> document = s.read(file);
+        if (!document) continue;
+        Diagnostics diagnostics;
+        s.compiler.validate(*document, diagnostics);
+        s.report(diagnostics, "validate " + file);
+    }
+    return s.exitCode();
+}
+
+// A file of a document: as it is, beside the document, or below a search path.
+static std::string resolved(const Options& options, const std::string& document, const std::string& file) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    if (file.empty() || fs::path(file).is_absolute()) return file;
+    fs::path beside = fs::path(document).parent_path() / file;
+    if (fs::exists(beside, ignored)) return beside.string();
+    for (const std::string& path : options.paths)
+        if (fs::exists(fs::path(path) / file, ignored)) return (fs::path(path) / file).string();
+    return beside.string();
+}
+
+int draw(const Options& options) {
+    Session s{options};
+    if (!s.start()) return s.exitCode();
+    const std::string& file = options.files[0];
+    std::unique_ptr<doc::Document> document = s.read(file);
+    if (!document) return s.exitCode();
+    std::vector<doc::ElementId> elements = s.elements(file, *document);
+    if (elements.empty()) return s.exitCode();
+    Result<Shader> shader = s.shaderOf(file, *document, elements[0]);
+    if (!shader || !options.dump.empty()) return s.exitCode();
+
+    scene::Settings settings;
+    settings.size = options.size;
+    settings.samples = options.samples;
+    settings.environment = options.environment;
+    settings.exposure = options.exposure;
+    settings.output = options.picture;
+    for (const TextureBinding& t : shader->textures) {
+        scene::Texture texture{
+            t.uniform, resolved(options, file, t.file), t.uAddress, t.vAddress, t.filter, {0, 0, 0, 0}, t.path};
+        std::size_t n = t.defaultColor.size();
+        for (std::size_t i = 0; i < 4; i++)
+            texture.defaultColor[i] = n == 1 ? t.defaultColor[0] : i < n ? t.defaultColor[i] : i == 3 ? 1.0f : 0.0f;
+        settings.textures.push_back(std::move(texture));
+    }
+    Diagnostics diagnostics;
+    if (options.with == "interpreter") {
+        oracle::RenderJob job{std::move(settings), &shader->program->module, &shader->program->interface};
+        oracle::drawWithModule(job, diagnostics);
+    } else {
+        draw::Job job{std::move(settings), shader->vertex, shader->pixel};
+        draw::drawWithModule(job, diagnostics);
+    }
+    s.report(diagnostics);
+    return s.exitCode();
+}
+
+}  // namespace shaderx::cli

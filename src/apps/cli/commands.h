@@ -1,0 +1,29 @@
+// What the program does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace shaderx::cli {
+
+enum ExitCode { kDone = 0, kInputErrors = 1, kBadUsage = 2, kOurBug = 3 };
+
+struct Options {
+    std::vector<std::string> files, paths, libraries;
+    std::string out = ".", target = "glsl", element, interface = "live", dump;
+    // of draw
+    std::string picture, environment, with = "gl";
+    int size = 512, samples = 1024;
+    float exposure = 0;
+    // of eval
+    std::string function;
+    std::vector<std::string> arguments;
+};
+
+int generate(const Options& options);
+int validate(const Options& options);
+int draw(const Options& options);
+int showIr(const Options& options);
+int evaluate(const Options& options);
+
+}  // namespace shaderx::cli

@@ -1,0 +1,82 @@
+#include "apps/cli/files.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include <unistd.h>
+
+#include "doc/file_resolver.h"
+
+namespace shaderx::cli {
+
+namespace fs = std::filesystem;
+
+bool readInput(const std::string& file, std::string& text, Diagnostics& diagnostics) {
+    if (file == "-") {
+        char buffer[65536];
+        for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, stdin)) > 0;) text.append(buffer, n);
+        return true;
+    }
+    std::optional<std::string> read = doc::readFile(file);
+    if (!read) {
+        diagnostics.error("cannot-read", "cannot read this file").where.file = file;
+        return false;
+    }
+    text = std::move(*read);
+    return true;
+}
+
+bool writeFile(const std::string& file, std::string_view text, Diagnostics& diagnostics) {
+    bool console = file == "-";
+    std::string beside = file + ".part" + std::to_string(getpid());
+    std::FILE* out = console ? stdout : std::fopen(beside.c_str(), "wb");
+    bool ok = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
+    if (out) ok = (console ? std::fflush(out) : std::fclose(out)) == 0 && ok;
+    if (ok && !console) ok = std::rename(beside.c_str(), file.c_str()) == 0;
+    if (ok) return true;
+    diagnostics.error("cannot-write", std::string("cannot write this file: ") + std::strerror(errno)).where.file = file;
+    if (out && !console) std::remove(beside.c_str());
+    return false;
+}
+
+bool makeFolder(const std::string& folder, Diagnostics& diagnostics) {
+    std::error_code failed;
+    fs::create_directories(folder, failed);
+    if (!failed && fs::is_directory(folder, failed)) return true;
+    diagnostics.error("cannot-write", "cannot make this folder").where.file = folder;
+    return false;
+}
+
+bool readLibrary(const std::string& folder, std::vector<LibraryFile>& files, Diagnostics& diagnostics) {
+    std::error_code failed;
+    fs::directory_iterator it(folder, failed);
+    if (failed) {
+        diagnostics.error("cannot-read", "cannot read this folder").where.file = folder;
+        return false;
+    }
+    bool ok = true;
+    for (; it != fs::directory_iterator(); it.increment(failed)) {
+        if (failed) break;
+        std::string extension = it->path().extension().string();
+        if (extension != ".mtlx" && extension != ".sl") continue;
+        LibraryFile file{it->path().filename().string(), {}};
+        ok = readInput(it->path().string(), file.text, diagnostics) && ok;
+        files.push_back(std::move(file));
+    }
+    return ok && !failed;
+}
+
+std::string stemOf(const std::string& file) { return file == "-" ? "stdin" : fs::path(file).stem().string(); }
+
+std::string fileNameOf(std::string_view path) {
+    std::string out;
+    for (char c : path) {
+        bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        out += plain ? c : '_';
+    }
+    return out;
+}
+
+}  // namespace shaderx::cli

@@ -1,0 +1,94 @@
+// shaderx: materials to shaders, on the command line.
+#include <algorithm>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+
+#include "apps/cli/commands.h"
+
+namespace {
+
+using shaderx::cli::Options;
+
+void common(CLI::App& command, Options& o) {
+    command.add_option("--path", o.paths, "where to look for included files and textures; may be repeated")
+        ->allow_extra_args(false);
+    command.add_option("--library", o.libraries, "a folder with more node definitions; may be repeated")
+        ->allow_extra_args(false);
+}
+
+void shading(CLI::App& command, Options& o) {
+    command.add_option("--element", o.element,
+                       "the element to compile, by its path; default: all that can be rendered");
+    command.add_option("--interface", o.interface, "live: authored values are uniforms; baked: none are")
+        ->check(CLI::IsMember({"live", "baked", "reduced"}));
+    command.add_option("--dump", o.dump,
+                       "print the program after a stage: read, check, graph, lower, specialise, shade, interface, "
+                       "place, legalise, print");
+}
+
+void drawing(CLI::App& command, Options& o) {
+    command.add_option("FILE", o.files, "the document; - is standard input")->required()->expected(1);
+    command.add_option("-o,--out", o.picture, "the picture: .png, or linear .exr or .pfm")->required();
+    command.add_option("--with", o.with, "gl: the machine's driver; interpreter: the program itself, on the CPU")
+        ->check(CLI::IsMember({"gl", "interpreter"}));
+    command.add_option("--size", o.size, "pixels a side")->check(CLI::Range(1, 16384));
+    command.add_option("--environment", o.environment,
+                       "a latitude-longitude picture of light (.hdr, .exr); default: a sky with two lamps");
+    command.add_option("--samples", o.samples, "samples of the environment a pixel and lobe")
+        ->check(CLI::Range(0, 1 << 20));
+    command.add_option("--exposure", o.exposure, "stops, for .png");
+    shading(command, o);
+    common(command, o);
+}
+
+void evaluating(CLI::App& command, Options& o) {
+    command.add_option("FILE", o.files, "the text; - is standard input")
+        ->required()
+        ->expected(1)
+        ->allow_extra_args(false);
+    command.add_option("--function", o.function, "its name; default: the last one of the file");
+    command.add_option("ARGS", o.arguments, "a value for each parameter: 0.5, or 1,2,3 with components, or true");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    Options o;
+    CLI::App app{"ShaderX, a compiler for materials"};
+    app.set_version_flag("--version", "shaderx " SHADERX_VERSION);
+    app.require_subcommand(1);
+    // All options of all commands would cost each start 0.3 M instructions: only those of the command asked for.
+    auto named = [&](std::string_view command) { return std::find(argv, argv + argc, command) != argv + argc; };
+
+    CLI::App* generate = app.add_subcommand("generate", "write the shaders of MaterialX documents");
+    generate->add_option("FILE", o.files, "documents; - is standard input")->required();
+    generate->add_option("-t,--target", o.target, "the shading language")->check(CLI::IsMember({"glsl"}));
+    generate->add_option("-o,--out", o.out, "the folder to write to; - is standard output");
+    shading(*generate, o);
+    common(*generate, o);
+
+    CLI::App* validate = app.add_subcommand("validate", "report all mistakes of MaterialX documents");
+    validate->add_option("FILE", o.files, "documents; - is standard input")->required();
+    common(*validate, o);
+
+    CLI::App* draw = app.add_subcommand("draw", "draw a material on a sphere");
+    if (named("draw")) drawing(*draw, o);
+
+    CLI::App* ir = app.add_subcommand("ir", "check a program in the text form of the IR and print it");
+    if (named("ir")) ir->add_option("FILE", o.files, "the text; - is standard input")->required()->expected(1);
+
+    CLI::App* eval = app.add_subcommand("eval", "run a function of a program in the text form of the IR");
+    if (named("eval")) evaluating(*eval, o);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return app.exit(e) == 0 ? shaderx::cli::kDone : shaderx::cli::kBadUsage;
+    }
+    if (*generate) return shaderx::cli::generate(o);
+    if (*validate) return shaderx::cli::validate(o);
+    if (*ir) return shaderx::cli::showIr(o);
+    if (*eval) return shaderx::cli::evaluate(o);
+    return shaderx::cli::draw(o);
+}
