@@ -457,7 +457,8 @@ struct Simplifier {
                 if (isAll(x[1], 0)) return b.null(type);
                 return {};
             case Op::ClosureLayer:
-                if (isNull(x[0])) return x[1];
+                // Nothing over a volume is nothing that a surface has.
+                if (isNull(x[0])) return expr(x[1]).type == type ? x[1] : b.null(type);
                 if (isNull(x[1])) return x[0];
                 return {};
             default:
