@@ -70,10 +70,10 @@ bool NodeBodies::fromSource(doc::NodeDef def, const doc::Implementation& impleme
     return false;
 }
 
-std::vector<sl::Signature> NodeBodies::known() const {
-    std::vector<sl::Signature> all;
-    for (Library* l : libraries_) all.insert(all.end(), l->signatures().begin(), l->signatures().end());
-    return all;
+const std::vector<sl::Signature>& NodeBodies::known() {
+    if (known_.empty())
+        for (Library* l : libraries_) known_.insert(known_.end(), l->signatures().begin(), l->signatures().end());
+    return known_;
 }
 
 Function NodeBodies::start(doc::NodeDef def) const {

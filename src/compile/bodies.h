@@ -38,13 +38,14 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     bool leaf(doc::NodeDef def, std::string_view name);
     bool attribute(doc::NodeDef def);
     ir::Function start(doc::NodeDef def) const;
-    std::vector<sl::Signature> known() const;
+    const std::vector<sl::Signature>& known();
 
     NameTable& names_;
     const doc::Definitions& definitions_;
     std::vector<Library*> libraries_;
     std::vector<const doc::Document*> documents_;
     ir::Module made_;
+    std::vector<sl::Signature> known_;  // of all libraries, once asked for
     std::unordered_set<Name> uniformNames_;
     std::unordered_set<Name> underWay_;  // graphs that use themselves must not go on for ever
 };

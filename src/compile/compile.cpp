@@ -71,8 +71,6 @@ template <class F>
 static bool guarded(Diagnostics& diagnostics, std::string_view step, F&& run) {
     try {
         return run();
-    } catch (const InternalError& e) {
-        diagnostics.add(Severity::Internal, "internal", fmt::format("{}: {}", step, e.what()));
     } catch (const std::bad_alloc&) {
         diagnostics.error("out-of-memory", fmt::format("{}: not enough memory", step));
     } catch (const std::exception& e) {

@@ -16,6 +16,7 @@ class Builder {
     Builder(Module& module, Function& function);
     Module& module() { return module_; }
     Function& function() { return f_; }
+    const Function& function() const { return f_; }
 
     ExprId constant(Type type, std::span<const std::uint32_t> words);
     ExprId constant(Type type, std::initializer_list<float> values);  // one value fills the type

@@ -10,16 +10,16 @@ std::span<const ExprId> Copy::operands(ExprId e) {
     return operands_;
 }
 
-ExprId Copy::one(ExprId id) {
+ExprId Copy::one(ExprId id, Type type) {
     const Expr& e = from_[id];
     std::uint32_t payload = e.payload;
     ExprId made;
     if (e.op == Op::Constant && componentCount(e.type)) {
-        made = to_.constant(e.type, from_.constantWords(id));
+        made = to_.constant(type, from_.constantWords(id));
     } else {
         if (e.op == Op::LoopArg) payload += loopBase_ << 8;
         if (e.op == Op::Loop || e.op == Op::Lights) payload += loopBase_;
-        made = to_.emit(e.op, e.type, operands(id), payload);
+        made = to_.emit(e.op, type, operands(id), payload);
     }
     set(id, made);
     if (from_.hints[id.index]) to_.hint(made, from_.hints[id.index]);

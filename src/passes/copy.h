@@ -19,7 +19,9 @@ class Copy {
     // The copies of an expression's operands; valid until the next call.
     std::span<const ir::ExprId> operands(ir::ExprId e);
     // Copies one expression whose operands are copied, its hint too.
-    ir::ExprId one(ir::ExprId e);
+    ir::ExprId one(ir::ExprId e) { return one(e, from_[e].type); }
+    // The same as another type of as many components.
+    ir::ExprId one(ir::ExprId e, ir::Type type);
 
   private:
     const ir::Function& from_;

@@ -47,13 +47,12 @@ struct Shader {
             if (live[i] && !isClosure(from.exprs[i].type)) copy.one(ExprId(i));
         ExprId result = from.results[0].value;
         Type type = from.results[0].type;
-        if (type == Type::Material) result = shaderOf(result);
         ExprId pixel;
         if (type == Type::SurfaceShader || type == Type::Material) {
             Lit lit = surface(result);
             pixel = b.make(Type::Vector4, {product(lit.color, lit.opacity), one()});
         } else if (type == Type::BSDF) {
-            pixel = b.make(Type::Vector4, {environment(result, one()), one()});
+            pixel = b.make(Type::Vector4, {environment(result), one()});
         } else if (type == Type::EDF) {
             pixel = b.make(Type::Vector4, {emission(result), one()});
         } else if (isClosure(type)) {
@@ -63,9 +62,6 @@ struct Shader {
         }
         b.addResult(output, pixel);
     }
-
-    // A material is its surface shader as long as nothing else is drawn.
-    ExprId shaderOf(ExprId e) const { return e; }
 
     ExprId asColor(ExprId v) {
         Type t = b.type(v);
@@ -127,18 +123,18 @@ struct Shader {
     }
 
     ExprId surfaceColor(ExprId bsdf, ExprId edf) {
-        ExprId reflected = environment(bsdf, one());
+        ExprId reflected = environment(bsdf);
         return b.op(Op::Add, {reflected, emission(edf)});
     }
 
     // Weights of all closures below a root, by expression: how much of each the root contains.
-    std::vector<ExprId> weigh(ExprId root, ExprId weight, Type kind) {
+    std::vector<ExprId> weigh(ExprId root, Type kind) {
         std::vector<ExprId> w(from.exprs.size());
         auto give = [&](ExprId to, ExprId x) {
             ExprId& sum = w[to.index];
             sum = sum ? b.op(Op::Add, {sum, x}) : x;
         };
-        w[root.index] = weight;
+        w[root.index] = one();
         for (std::uint32_t i = root.index + 1; i-- > 0;) {
             if (!w[i]) continue;
             const Expr& e = from.exprs[i];
@@ -295,8 +291,8 @@ struct Shader {
         return leaves[id.index] = light;
     }
 
-    ExprId environment(ExprId bsdf, ExprId weight) {
-        std::vector<ExprId> w = weigh(bsdf, weight, Type::BSDF);
+    ExprId environment(ExprId bsdf) {
+        std::vector<ExprId> w = weigh(bsdf, Type::BSDF);
         // From the outermost lobe inwards. Lobes that differ only in weight are one.
         std::vector<std::pair<ExprId, ExprId>> lobes;  // radiance and weight
         for (std::uint32_t i = bsdf.index + 1; i-- > 0;) {
@@ -318,7 +314,7 @@ struct Shader {
     }
 
     ExprId emission(ExprId edf) {
-        std::vector<ExprId> w = weigh(edf, one(), Type::EDF);
+        std::vector<ExprId> w = weigh(edf, Type::EDF);
         ExprId sum;
         for (std::uint32_t i = 0; i <= edf.index; i++) {
             if (!w[i] || from.exprs[i].op != Op::Leaf) continue;

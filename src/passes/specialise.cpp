@@ -177,9 +177,9 @@ struct Specialiser {
     }
 
     ExprId filler(const Builder& b, ExprId e) const {
-        const Expr& x = const_cast<Builder&>(b).function()[e];
+        const Expr& x = b.function()[e];
         if (x.op != Op::Make || x.operandCount != 1 || !isVector(x.type)) return {};
-        return const_cast<Builder&>(b).function().operand(e, 0);
+        return b.function().operand(e, 0);
     }
 
     Argument argumentOf(const Function& caller, Builder& b, ExprId e) const {

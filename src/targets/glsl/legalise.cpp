@@ -91,8 +91,6 @@ struct Legaliser {
             made = b.emit(Op::Retype, type, {copy.one(id)});
         } else if (e.op == Op::Known) {
             made = b.boolean(false);
-        } else if (e.op == Op::Constant && componentCount(type)) {
-            made = b.constant(type, from.constantWords(id));
         } else if (isMatrix(type) && takesNoMatrix(e.op)) {
             made = byColumns(e.op, type, o);
         } else if (info(e.op).rule == TypeRule::Wider && isVector(type)) {
@@ -106,19 +104,12 @@ struct Legaliser {
             made = b.op(Op::And, {b.op(Op::Not, {o[0]}), o[1]});
         } else if (e.op == Op::LessEqual && b.type(o[0]) == Type::Boolean) {
             made = b.op(Op::Or, {b.op(Op::Not, {o[0]}), o[1]});
-        } else if (type != e.type) {
-            made = b.emit(e.op, type, o, payloadOf(id));
         } else {
-            copy.one(id);
+            copy.one(id, type);
             return;
         }
         copy.set(id, made);
         if (from.hints[id.index]) b.hint(made, from.hints[id.index]);
-    }
-
-    // Loops are renumbered by the copy; here they keep the numbers that it gives.
-    std::uint32_t payloadOf(ExprId id) const {
-        return from[id].payload;  // the function is new, so the copy's first loop number is 0
     }
 
     ExprId byColumns(Op op, Type type, std::span<const ExprId> o) {
