@@ -5,46 +5,53 @@
 
 namespace shaderx {
 
-std::uint32_t hashText(std::string_view text) {
-    // FNV-1a, with a final mix so that the low bits, which pick the slot, depend on every byte.
-    std::uint32_t h = 2166136261u;
-    for (unsigned char c : text) h = (h ^ c) * 16777619u;
-    return h ^ (h >> 15);
-}
-
 static std::string_view imageText(const NameImage& image, std::uint32_t i) {
     std::uint32_t begin = i ? image.ends[i - 1] : 0;
     return image.bytes.substr(begin, image.ends[i] - begin);
 }
 
-Name NameTable::find(std::string_view text) const {
-    if (!image_.slots.empty()) {
-        std::uint32_t mask = static_cast<std::uint32_t>(image_.slots.size()) - 1;
-        for (std::uint32_t i = hashText(text) & mask; image_.slots[i]; i = (i + 1) & mask)
-            if (imageText(image_, image_.slots[i] - 1) == text) return Name(image_.slots[i] - 1);
-    }
-    if (slots_.empty()) return {};
-    std::uint32_t found = slots_[slotOf(text)];
-    return found ? Name(imageSize() + found - 1) : Name();
+Name NameTable::inImage(std::string_view text, std::uint32_t hash) const {
+    if (image_.slots.empty()) return {};
+    const std::uint32_t mask = static_cast<std::uint32_t>(image_.slots.size()) - 1;
+    for (std::uint32_t i = hash & mask; image_.slots[i]; i = (i + 1) & mask)
+        if (imageText(image_, image_.slots[i] - 1) == text) return Name(image_.slots[i] - 1);
+    return {};
 }
 
-std::uint32_t NameTable::slotOf(std::string_view text) const {
-    std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1, i = hashText(text) & mask;
+std::uint32_t NameTable::slotOf(std::string_view text, std::uint32_t hash) const {
+    std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1, i = hash & mask;
     while (slots_[i] && texts_[slots_[i] - 1] != text) i = (i + 1) & mask;
     return i;
 }
 
+Name NameTable::find(std::string_view text) const {
+    const std::uint32_t hash = hashText(text);
+    if (Name known = inImage(text, hash)) return known;
+    if (slots_.empty()) return {};
+    std::uint32_t found = slots_[slotOf(text, hash)];
+    return found ? Name(imageSize() + found - 1) : Name();
+}
+
 Name NameTable::intern(std::string_view text) {
-    if (Name known = find(text)) return known;
+    const std::uint32_t hash = hashText(text);
+    if (Name known = inImage(text, hash)) return known;
     if (texts_.size() * 2 >= slots_.size()) grow();
-    texts_.push_back(store(text));
-    slots_[slotOf(text)] = static_cast<std::uint32_t>(texts_.size());
-    return Name(size() - 1);
+    std::uint32_t& slot = slots_[slotOf(text, hash)];
+    if (!slot) {
+        texts_.push_back(store(text));
+        slot = static_cast<std::uint32_t>(texts_.size());
+    }
+    return Name(imageSize() + slot - 1);
 }
 
 void NameTable::grow() {
     slots_.assign(slots_.empty() ? 256 : slots_.size() * 2, 0);
-    for (std::size_t i = 0; i < texts_.size(); i++) slots_[slotOf(texts_[i])] = static_cast<std::uint32_t>(i + 1);
+    const std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1;
+    for (std::size_t k = 0; k < texts_.size(); k++) {
+        std::uint32_t i = hashText(texts_[k]) & mask;
+        while (slots_[i]) i = (i + 1) & mask;
+        slots_[i] = static_cast<std::uint32_t>(k + 1);
+    }
 }
 
 std::string_view NameTable::store(std::string_view text) {

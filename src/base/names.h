@@ -21,8 +21,13 @@ struct NameImage {
     std::string_view bytes;
 };
 
-// Hash of a text; also that of NameImage's slots, so it is part of the library's file format.
-std::uint32_t hashText(std::string_view text);
+// Hash of a text; also that of NameImage's slots, so it is part of the library's file format. FNV-1a, with a final mix
+// so that the low bits, which pick the slot, depend on every byte.
+constexpr std::uint32_t hashText(std::string_view text) {
+    std::uint32_t h = 2166136261u;
+    for (char c : text) h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
+    return h ^ (h >> 15);
+}
 
 // Owns the text of every name. Not thread-safe: one table belongs to one compilation. The empty text is a name too.
 class NameTable {
@@ -42,7 +47,8 @@ class NameTable {
 
   private:
     std::uint32_t imageSize() const { return static_cast<std::uint32_t>(image_.ends.size()); }
-    std::uint32_t slotOf(std::string_view text) const;
+    Name inImage(std::string_view text, std::uint32_t hash) const;
+    std::uint32_t slotOf(std::string_view text, std::uint32_t hash) const;
     void grow();
     std::string_view store(std::string_view text);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "ir/builder.h"
+#include "passes/specialise.h"
 
 namespace shaderx {
 
@@ -39,6 +40,7 @@ Name NodeBodies::functionOf(doc::NodeDef def, Diagnostics& diagnostics) {
     if (implementation.kind == doc::Implementation::Kind::Graph) ok = fromGraph(def, implementation, diagnostics);
     if (implementation.kind == doc::Implementation::Kind::Source) ok = fromSource(def, implementation, diagnostics);
     underWay_.erase(name);
+    if (ok) passes::flatten(made_, *made_.findOwn(name));
     if (!ok && implementation && diagnostics.errorCount() == errors) {
         doc::ElementRef element = implementation.element;
         Diagnostic& e =

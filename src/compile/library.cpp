@@ -4,6 +4,7 @@
 #include <map>
 
 #include "doc/read.h"
+#include "passes/specialise.h"
 
 namespace shaderx {
 
@@ -54,6 +55,7 @@ class TextLibrary final : public Library {
             known.insert(known.end(), l->signatures().begin(), l->signatures().end());
         }
         sl::compile(module_, sources, known, signatures_, diagnostics);
+        for (auto& f : module_.functions) passes::flatten(module_, *f);
         return diagnostics.errorCount() == errors;
     }
 

@@ -47,8 +47,10 @@ struct Lowerer {
             if (!value) value = b.null(o.type);
             b.addResult(o.name, value);
         }
-        if (ok) module.put(std::move(fresh));
-        return ok;
+        if (!ok) return false;
+        compact(fresh);
+        module.put(std::move(fresh));
+        return true;
     }
 
     Diagnostic& error(doc::ElementId at, std::string_view code, std::string message) {

@@ -10,8 +10,13 @@
 namespace shaderx::ir {
 
 Builder::Builder(Module& module, Function& function) : module_(module), f_(function) {
-    // A function that is built further keeps its expressions unique.
-    grow();
+    constexpr std::size_t kRoom = 48;  // most functions are small
+    if (f_.exprs.empty()) {
+        reserve(kRoom);
+        f_.words.reserve(kRoom);
+    } else {
+        grow(f_.exprs.size());  // a function that is built further keeps its expressions unique
+    }
 }
 
 static std::uint32_t mix(std::uint32_t h, std::uint32_t v) {
@@ -19,74 +24,98 @@ static std::uint32_t mix(std::uint32_t h, std::uint32_t v) {
     return h ^ h >> 15;
 }
 
-static std::uint32_t hashExpr(const Expr& e, std::span<const ExprId> operands, const Function& f) {
-    std::uint32_t h = mix(static_cast<std::uint32_t>(e.op) << 16 | static_cast<std::uint32_t>(e.type), 0x51ed270bu);
-    if (e.op == Op::Constant && componentCount(e.type) > 0)
-        for (int i = 0; i < componentCount(e.type); i++) h = mix(h, f.words[e.payload + i]);
-    else
-        h = mix(h, e.payload);
+static std::uint32_t hashStart(Op op, Type type) {
+    return mix(static_cast<std::uint32_t>(op) << 16 | static_cast<std::uint32_t>(type), 0x51ed270bu);
+}
+
+static std::uint32_t hashConstant(Type type, std::span<const std::uint32_t> words) {
+    std::uint32_t h = hashStart(Op::Constant, type);
+    for (std::uint32_t w : words) h = mix(h, w);
+    return h;
+}
+
+static std::uint32_t hashExpr(const Expr& e, std::span<const ExprId> operands) {
+    std::uint32_t h = mix(hashStart(e.op, e.type), e.payload);
     for (ExprId o : operands) h = mix(h, o.index);
     return h;
 }
 
-static bool equal(const Expr& a, std::span<const ExprId> ao, const Expr& b, std::span<const ExprId> bo,
-                  const Function& f) {
-    if (a.op != b.op || a.type != b.type || !std::equal(ao.begin(), ao.end(), bo.begin(), bo.end())) return false;
-    if (a.op == Op::Constant && componentCount(a.type) > 0)
-        return std::equal(f.words.begin() + a.payload, f.words.begin() + a.payload + componentCount(a.type),
-                          f.words.begin() + b.payload);
-    return a.payload == b.payload;
+static bool hasWords(const Expr& e) { return e.op == Op::Constant && componentCount(e.type) > 0; }
+
+void Builder::reserve(std::size_t expressions) {
+    f_.exprs.reserve(expressions);
+    f_.hints.reserve(expressions);
+    f_.operands.reserve(2 * expressions);
+    if (expressions * 2 >= slots_.size()) grow(expressions);
 }
 
-std::uint32_t Builder::slotOf(const Expr& key, std::span<const ExprId> operands) const {
-    std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1, i = hashExpr(key, operands, f_) & mask;
-    while (slots_[i]) {
-        const Expr& other = f_.exprs[slots_[i] - 1];
-        if (equal(other, f_.operandsOf(other), key, operands, f_)) break;
-        i = (i + 1) & mask;
+void Builder::grow(std::size_t expressions) {
+    slots_.assign(std::bit_ceil(std::max<std::size_t>(32, expressions * 2 + 2)), 0);
+    const std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1;
+    for (std::size_t k = 0; k < f_.exprs.size(); k++) {
+        const Expr& e = f_.exprs[k];
+        const ExprId id(static_cast<std::uint32_t>(k));
+        std::uint32_t i =
+            (hasWords(e) ? hashConstant(e.type, f_.constantWords(id)) : hashExpr(e, f_.operandsOf(e))) & mask;
+        while (slots_[i]) i = (i + 1) & mask;
+        slots_[i] = id.index + 1;
     }
-    return i;
 }
 
-void Builder::grow() {
-    slots_.assign(std::max<std::size_t>(64, std::bit_ceil(f_.exprs.size() * 4)), 0);
-    for (std::size_t i = 0; i < f_.exprs.size(); i++)
-        slots_[slotOf(f_.exprs[i], f_.operandsOf(f_.exprs[i]))] = static_cast<std::uint32_t>(i + 1);
-}
-
-ExprId Builder::intern(const Expr& key, std::span<const ExprId> operands) {
-    if (f_.exprs.size() * 2 >= slots_.size()) grow();
-    std::uint32_t slot = slotOf(key, operands);
-    if (slots_[slot]) return ExprId(slots_[slot] - 1);
-    Expr e = key;
-    e.operandCount = static_cast<std::uint16_t>(operands.size());
-    ensure(operands.size() == e.operandCount, "too many operands");
-    e.firstOperand = static_cast<std::uint32_t>(f_.operands.size());
-    // The operands may lie in the very array that grows.
-    std::size_t n = operands.size();
-    if (n && operands.data() >= f_.operands.data() && operands.data() < f_.operands.data() + f_.operands.size()) {
-        std::size_t at = static_cast<std::size_t>(operands.data() - f_.operands.data());
-        for (std::size_t i = 0; i < n; i++) {
-            ExprId o = f_.operands[at + i];
-            f_.operands.push_back(o);
-        }
-    } else {
-        f_.operands.insert(f_.operands.end(), operands.begin(), operands.end());
-    }
+ExprId Builder::append(const Expr& e, std::uint32_t slot) {
     f_.exprs.push_back(e);
     f_.hints.emplace_back();
     slots_[slot] = static_cast<std::uint32_t>(f_.exprs.size());
     return ExprId(static_cast<std::uint32_t>(f_.exprs.size() - 1));
 }
 
+ExprId Builder::intern(const Expr& key, std::span<const ExprId> operands) {
+    if (f_.exprs.size() * 2 >= slots_.size()) grow(f_.exprs.size() * 2);
+    const std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1;
+    const std::size_t n = operands.size();
+    std::uint32_t i = hashExpr(key, operands) & mask;
+    for (; slots_[i]; i = (i + 1) & mask) {
+        const Expr& e = f_.exprs[slots_[i] - 1];
+        if (e.op == key.op && e.type == key.type && e.payload == key.payload && e.operandCount == n &&
+            std::equal(operands.begin(), operands.end(), f_.operands.begin() + e.firstOperand) && !hasWords(e))
+            return ExprId(slots_[i] - 1);
+    }
+    Expr e = key;
+    e.operandCount = static_cast<std::uint16_t>(n);
+    ensure(e.operandCount == n, "too many operands");
+    e.firstOperand = static_cast<std::uint32_t>(f_.operands.size());
+    // The operands may lie in the very array that grows.
+    const bool own =
+        n && operands.data() >= f_.operands.data() && operands.data() < f_.operands.data() + f_.operands.size();
+    const std::size_t at = own ? static_cast<std::size_t>(operands.data() - f_.operands.data()) : 0;
+    for (std::size_t k = 0; k < n; k++) {
+        const ExprId o = own ? f_.operands[at + k] : operands[k];
+        f_.operands.push_back(o);
+    }
+    return append(e, i);
+}
+
 ExprId Builder::constant(Type type, std::span<const std::uint32_t> words) {
     ensure(static_cast<int>(words.size()) == componentCount(type), "constant of another size");
-    Expr key{Op::Constant, 0, 0, type, 0, 0, static_cast<std::uint32_t>(f_.words.size())};
-    std::size_t before = f_.exprs.size(), size = f_.words.size();
+    if (words.empty()) return intern({Op::Constant, 0, 0, type, 0, 0, 0}, {});
+    if (f_.exprs.size() * 2 >= slots_.size()) grow(f_.exprs.size() * 2);
+    const std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1;
+    std::uint32_t i = hashConstant(type, words) & mask;
+    for (; slots_[i]; i = (i + 1) & mask) {
+        const Expr& e = f_.exprs[slots_[i] - 1];
+        if (e.op == Op::Constant && e.type == type &&
+            std::equal(words.begin(), words.end(), f_.words.begin() + e.payload))
+            return ExprId(slots_[i] - 1);
+    }
+    const Expr e{Op::Constant,
+                 0,
+                 0,
+                 type,
+                 0,
+                 static_cast<std::uint32_t>(f_.operands.size()),
+                 static_cast<std::uint32_t>(f_.words.size())};
     f_.words.insert(f_.words.end(), words.begin(), words.end());
-    ExprId made = intern(key, {});
-    if (made.index < before) f_.words.resize(size);  // an older constant has these words
-    return made;
+    return append(e, i);
 }
 
 ExprId Builder::constant(Type type, std::initializer_list<float> values) {
@@ -133,7 +162,8 @@ ExprId Builder::uniform(Name name, Type type) { return intern({Op::Uniform, 0, 0
 
 ExprId Builder::emit(Op op, Type type, std::span<const ExprId> operands, std::uint32_t payload) {
     ensure(type != Type::Void, "operands do not fit the operation");
-    if (ExprId simple = simplify(*this, op, type, operands, payload)) return simple;
+    if (hasRules(op))
+        if (ExprId simple = simplify(*this, op, type, operands, payload)) return simple;
     return intern({op, 0, 0, type, 0, 0, payload}, operands);
 }
 
@@ -287,6 +317,45 @@ std::vector<bool> reachable(const Function& f) {
         if (live[i])
             for (ExprId o : f.operandsOf(f.exprs[i])) live[o.index] = true;
     return live;
+}
+
+void compact(Function& f) {
+    constexpr std::uint32_t kDead = ExprId::kNone;
+    const std::size_t n = f.exprs.size();
+    std::vector<std::uint32_t> at(n, kDead);  // any other number while it is only known to be needed
+    std::size_t left = 0;
+    for (const ResultValue& r : f.results) at[r.value.index] = 0;
+    for (std::size_t i = n; i-- > 0;) {
+        if (at[i] == kDead) continue;
+        left++;
+        for (ExprId o : f.operandsOf(f.exprs[i])) at[o.index] = 0;
+    }
+    if (left == n) return;
+    std::uint32_t next = 0, operands = 0, words = 0;
+    for (std::size_t i = 0; i < n; i++) {
+        if (at[i] == kDead) continue;
+        Expr e = f.exprs[i];
+        ensure(operands <= e.firstOperand, "an arena that is out of order");
+        for (std::uint32_t k = 0; k < e.operandCount; k++)
+            f.operands[operands + k] = ExprId(at[f.operands[e.firstOperand + k].index]);
+        e.firstOperand = operands;
+        operands += e.operandCount;
+        if (hasWords(e)) {
+            const std::uint32_t count = static_cast<std::uint32_t>(componentCount(e.type));
+            ensure(words <= e.payload, "constants that are out of order");
+            std::copy_n(f.words.begin() + e.payload, count, f.words.begin() + words);
+            e.payload = words;
+            words += count;
+        }
+        at[i] = next;
+        f.hints[next] = f.hints[i];
+        f.exprs[next++] = e;
+    }
+    f.exprs.resize(next);
+    f.hints.resize(next);
+    f.operands.resize(operands);
+    f.words.resize(words);
+    for (ResultValue& r : f.results) r.value = ExprId(at[r.value.index]);
 }
 
 }  // namespace shaderx::ir

@@ -17,6 +17,8 @@ class Builder {
     Module& module() { return module_; }
     Function& function() { return f_; }
     const Function& function() const { return f_; }
+    // Makes room for as many expressions in all.
+    void reserve(std::size_t expressions);
 
     ExprId constant(Type type, std::span<const std::uint32_t> words);
     ExprId constant(Type type, std::initializer_list<float> values);  // one value fills the type
@@ -73,8 +75,8 @@ class Builder {
 
   private:
     ExprId intern(const Expr& key, std::span<const ExprId> operands);
-    void grow();
-    std::uint32_t slotOf(const Expr& key, std::span<const ExprId> operands) const;
+    ExprId append(const Expr& e, std::uint32_t slot);
+    void grow(std::size_t expressions);
 
     Module& module_;
     Function& f_;
@@ -91,5 +93,8 @@ std::vector<std::uint32_t> loopsOf(const Function& f);
 
 // Marks what the results need.
 std::vector<bool> reachable(const Function& f);
+
+// Drops what the results do not need; the others keep their order. The function must not have been placed.
+void compact(Function& f);
 
 }  // namespace shaderx::ir

@@ -593,10 +593,13 @@ bool evaluate(Op op, Type type, std::span<const Value> operands, std::uint32_t p
     Operand views[kMost];
     if (operands.size() > kMost) return false;
     for (std::size_t k = 0; k < operands.size(); k++) views[k] = {operands[k].type, operands[k].words};
-    const std::span<const Operand> all(views, operands.size());
+    return evaluate(op, type, std::span<const Operand>(views, operands.size()), payload, result);
+}
+
+bool evaluate(Op op, Type type, std::span<const Operand> operands, std::uint32_t payload, Value& result) {
     Value v;
     v.type = type;
-    if (!execute(op, type, all, payload, v.words) || isUndefined(op, type, all)) return false;
+    if (!execute(op, type, operands, payload, v.words) || isUndefined(op, type, operands)) return false;
     if (info(type).scalar == Scalar::Float)
         for (int i = 0; i < componentCount(type); i++)
             if (!std::isfinite(v.f(i))) return false;

@@ -47,7 +47,12 @@ struct OpInfo {
     std::int8_t operands;  // -1: any number
     TypeRule rule;
 };
-const OpInfo& info(Op op);
+inline constexpr OpInfo kOpInfo[] = {
+#define OP(name, text, operands, rule) {text, operands, TypeRule::rule},
+#include "ir/ops.def"
+#undef OP
+};
+constexpr const OpInfo& info(Op op) { return kOpInfo[static_cast<int>(op)]; }
 constexpr int kOps = 0
 #define OP(name, text, operands, rule) +1
 #include "ir/ops.def"
@@ -68,7 +73,12 @@ struct ContextInfo {
     ContextSource source;
     std::string_view host;  // the variable that hosts bind
 };
-const ContextInfo& info(Context c);
+inline constexpr ContextInfo kContextInfo[] = {
+#define CONTEXT(name, text, type, source, host) {text, Type::type, ContextSource::source, host},
+#include "ir/context.def"
+#undef CONTEXT
+};
+constexpr const ContextInfo& info(Context c) { return kContextInfo[static_cast<int>(c)]; }
 constexpr int kContexts = 0
 #define CONTEXT(name, text, type, source, host) +1
 #include "ir/context.def"

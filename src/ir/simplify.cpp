@@ -77,13 +77,15 @@ struct Simplifier {
     // Constants in, constant out.
     ExprId fold() {
         if (x.empty() || x.size() > kMaxFolded || componentCount(type) == 0) return {};
-        Value values[kMaxFolded], out;
-        for (std::size_t i = 0; i < x.size(); i++) {
-            if (!isNumber(x[i])) return {};
-            values[i].type = expr(x[i]).type;
-            auto words = f().constantWords(x[i]);
-            std::copy(words.begin(), words.end(), values[i].words);
-        }
+        for (ExprId e : x)
+            if (!isNumber(e)) return {};
+        return folded();
+    }
+
+    ExprId folded() {
+        Operand values[kMaxFolded];
+        for (std::size_t i = 0; i < x.size(); i++) values[i] = {expr(x[i]).type, f().constantWords(x[i]).data()};
+        Value out;
         if (!evaluate(op, type, std::span(values, x.size()), payload, out)) return {};
         return b.constant(type,
                           std::span<const std::uint32_t>(out.words, static_cast<std::size_t>(componentCount(type))));
@@ -471,16 +473,13 @@ struct Simplifier {
 
 ExprId simplify(Builder& b, Op op, Type type, std::span<const ExprId> operands, std::uint32_t payload) {
     // The arena may grow while rules build, so the operands are copied.
-    ExprId copy[kMaxFolded];
-    std::vector<ExprId> many;
     if (operands.size() <= kMaxFolded) {
-        std::copy(operands.begin(), operands.end(), copy);
-        operands = std::span<const ExprId>(copy, operands.size());
-    } else {
-        many.assign(operands.begin(), operands.end());
-        operands = many;
+        std::array<ExprId, kMaxFolded> copy;
+        std::copy(operands.begin(), operands.end(), copy.begin());
+        return Simplifier{b, op, type, std::span<const ExprId>(copy.data(), operands.size()), payload}.run();
     }
-    return Simplifier{b, op, type, operands, payload}.run();
+    const std::vector<ExprId> many(operands.begin(), operands.end());
+    return Simplifier{b, op, type, many, payload}.run();
 }
 
 }  // namespace shaderx::ir

@@ -5,6 +5,12 @@
 
 namespace shaderx::ir {
 
+// False for operations that `simplify` leaves as they are.
+inline bool hasRules(Op op) {
+    return (op >= Op::GeomProp && op <= Op::Index) || op == Op::Result ||
+           (op >= Op::ClosureMix && op <= Op::ClosureLayer);
+}
+
 // A simpler or constant expression equal to op(operands), or none. May append to the function.
 ExprId simplify(Builder& b, Op op, Type type, std::span<const ExprId> operands, std::uint32_t payload);
 

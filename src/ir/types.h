@@ -49,8 +49,28 @@ struct TypeInfo {
     Role role;
 };
 
+// clang-format off
+inline constexpr TypeInfo kTypes[kBuiltinTypes + 1] = {
+    {"void", Scalar::None, 0, 0, Role::None},          {"boolean", Scalar::Boolean, 1, 1, Role::None},
+    {"integer", Scalar::Integer, 1, 1, Role::None},    {"float", Scalar::Float, 1, 1, Role::None},
+    {"color3", Scalar::Float, 3, 1, Role::Color},      {"color4", Scalar::Float, 4, 1, Role::Color},
+    {"vector2", Scalar::Float, 2, 1, Role::Vector},    {"vector3", Scalar::Float, 3, 1, Role::Vector},
+    {"vector4", Scalar::Float, 4, 1, Role::Vector},    {"point", Scalar::Float, 3, 1, Role::Point},
+    {"normal", Scalar::Float, 3, 1, Role::Normal},     {"matrix33", Scalar::Float, 3, 3, Role::None},
+    {"matrix44", Scalar::Float, 4, 4, Role::None},     {"string", Scalar::None, 0, 0, Role::None},
+    {"texture2d", Scalar::None, 0, 0, Role::None},     {"tuple", Scalar::None, 0, 0, Role::None},
+    {"BSDF", Scalar::None, 0, 0, Role::None},          {"EDF", Scalar::None, 0, 0, Role::None},
+    {"VDF", Scalar::None, 0, 0, Role::None},           {"surfaceshader", Scalar::None, 0, 0, Role::None},
+    {"displacementshader", Scalar::None, 0, 0, Role::None}, {"volumeshader", Scalar::None, 0, 0, Role::None},
+    {"lightshader", Scalar::None, 0, 0, Role::None},   {"material", Scalar::None, 0, 0, Role::None},
+    {"struct", Scalar::None, 0, 0, Role::None},
+};
+// clang-format on
+
 // Structures read as a type without components.
-const TypeInfo& info(Type type);
+constexpr const TypeInfo& info(Type type) {
+    return kTypes[type < Type::FirstStruct ? static_cast<int>(type) : kBuiltinTypes];
+}
 
 // The built-in type of a name, or Void where there is none; "color" is color3, "vector" vector3, "int" integer.
 Type typeNamed(std::string_view name);

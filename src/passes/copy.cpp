@@ -5,9 +5,10 @@ namespace shaderx::passes {
 using namespace ir;
 
 std::span<const ExprId> Copy::operands(ExprId e) {
-    operands_.clear();
-    for (ExprId o : from_.operandsOf(e)) operands_.push_back(map_[o.index]);
-    return operands_;
+    std::span<const ExprId> from = from_.operandsOf(e);
+    if (operands_.size() < from.size()) operands_.resize(from.size());
+    for (std::size_t k = 0; k < from.size(); k++) operands_[k] = map_[from[k].index];
+    return {operands_.data(), from.size()};
 }
 
 ExprId Copy::one(ExprId id, Type type) {
@@ -21,7 +22,7 @@ ExprId Copy::one(ExprId id, Type type) {
         if (e.op == Op::Loop || e.op == Op::Lights) payload += loopBase_;
         made = to_.emit(e.op, type, operands(id), payload);
     }
-    set(id, made);
+    map_[id.index] = made;
     if (from_.hints[id.index]) to_.hint(made, from_.hints[id.index]);
     return made;
 }

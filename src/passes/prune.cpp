@@ -16,6 +16,7 @@ namespace {
 struct Use {
     std::vector<bool> results, params;
     std::vector<bool> live;  // expressions
+    bool isChanged = false;
 };
 
 struct Pruner {
@@ -97,8 +98,20 @@ struct Pruner {
         return less;
     }
 
-    void rebuild(Function& f, bool isEntry) {
+    // Whether anything of the function goes, or of those that it calls.
+    bool isChanged(const Function& f, bool isEntry) {
         const Use& use = uses[f.name];
+        auto any = [](const std::vector<bool>& v) { return std::find(v.begin(), v.end(), false) != v.end(); };
+        if (any(use.live) || any(use.results) || (!isEntry && any(use.params))) return true;
+        for (const Expr& e : f.exprs)
+            if (e.op == Op::Call && (uses[Name(e.payload)].isChanged || alias.count(Name(e.payload)))) return true;
+        return false;
+    }
+
+    void rebuild(Function& f, bool isEntry) {
+        Use& use = uses[f.name];
+        if (!isChanged(f, isEntry)) return;
+        use.isChanged = true;
         Function fresh;
         fresh.name = f.name;
         fresh.comment = f.comment;
@@ -110,6 +123,7 @@ struct Pruner {
                 fresh.params.push_back(f.params[i]);
             }
         Builder b(module, fresh);
+        b.reserve(f.exprs.size());
         Copy copy(f, b);
         for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
             if (!use.live[i]) continue;

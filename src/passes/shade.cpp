@@ -81,6 +81,11 @@ struct Shader {
     }
 
     ExprId product(ExprId a, ExprId c) { return b.op(Op::Mul, {a, c}); }
+    bool isZero(ExprId e) const {
+        if (!b.function().isConstant(e)) return false;
+        auto words = b.function().constantWords(e);
+        return std::all_of(words.begin(), words.end(), [](std::uint32_t w) { return w == 0; });
+    }
     ExprId black() { return b.constant(Type::Color3, {0.0f}); }
 
     // Surface shaders nest only by mixing; the nest is walked with a stack in the order of the arena.
@@ -195,6 +200,7 @@ struct Shader {
         auto of = [&](std::size_t k) { return throughput[o[k].index]; };
         switch (e.op) {
             case Op::Leaf:
+                if (isZero(weightOf(id))) return one();
                 return b.op(Op::Sub, {one(), product(weightOf(id), leaf(id).albedo)});
             case Op::ClosureMix:
                 return b.op(Op::Mix, {of(0), of(1), copy[o[2]]});
@@ -297,7 +303,9 @@ struct Shader {
         std::vector<std::pair<ExprId, ExprId>> lobes;  // radiance and weight
         for (std::uint32_t i = bsdf.index + 1; i-- > 0;) {
             if (!w[i] || from.exprs[i].op != Op::Leaf) continue;
-            ExprId share = product(w[i], weightOf(ExprId(i))), radiance = leaf(ExprId(i)).radiance;
+            ExprId share = product(w[i], weightOf(ExprId(i)));
+            if (isZero(share)) continue;
+            ExprId radiance = leaf(ExprId(i)).radiance;
             auto same = std::find_if(lobes.begin(), lobes.end(), [&](const auto& l) { return l.first == radiance; });
             if (same == lobes.end())
                 lobes.emplace_back(radiance, share);

@@ -1,7 +1,8 @@
 #include "passes/specialise.h"
 
 #include <algorithm>
-#include <map>
+#include <bit>
+#include <deque>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -24,29 +25,143 @@ enum class Shape : std::uint32_t { Any, Constant, Filled };
 struct Argument {
     Shape shape = Shape::Any;
     Type type = Type::Void;
-    std::vector<std::uint32_t> words;
-    friend bool operator==(const Argument&, const Argument&) = default;
+    std::span<const std::uint32_t> words;
+
+    bool isSame(const Argument& other) const {
+        return shape == other.shape && type == other.type &&
+               std::equal(words.begin(), words.end(), other.words.begin(), other.words.end());
+    }
 };
 
-// Of which function a clone is, and for which arguments.
-struct Clone {
-    Name callee;
-    std::vector<Argument> arguments;
+// Of which function a clone is, and for which arguments: one word for the name, for each argument one for its shape and
+// type and then the words that it has.
+using Key = std::vector<std::uint32_t>;
+
+void addArgument(Key& key, const Argument& a) {
+    key.push_back(static_cast<std::uint32_t>(a.shape) << 16 | static_cast<std::uint32_t>(a.type));
+    key.insert(key.end(), a.words.begin(), a.words.end());
+}
+
+// Calls visit(i, argument) for each argument of a key, in order.
+template <class F>
+void eachArgument(const Key& key, F&& visit) {
+    std::size_t at = 1;
+    for (std::uint32_t i = 0; at < key.size(); i++) {
+        Argument a{static_cast<Shape>(key[at] >> 16), static_cast<Type>(key[at] & 0xffff), {}};
+        at++;
+        if (a.shape == Shape::Constant) {
+            const std::size_t n = static_cast<std::size_t>(std::max(componentCount(a.type), 1));
+            a.words = std::span(key).subspan(at, n);
+            at += n;
+        }
+        visit(i, a);
+    }
+}
+
+struct KeyHash {
+    std::size_t operator()(const Key& key) const noexcept {
+        std::uint64_t h = key.size();
+        for (std::uint32_t w : key) h = (h ^ w) * 0x9e3779b97f4a7c15ull;
+        return h ^ h >> 32;
+    }
 };
 
-// The results of a call, and how many expressions there were before it.
+// The results of a call of several: how many expressions there were before it, and where its results are.
 struct Tuple {
-    std::uint32_t before = 0;
-    std::vector<ExprId> results;
+    std::uint32_t call, before;
+    std::size_t first, count;
+};
+
+// What one call on the way works with; kept for the next call of that depth, for its memory.
+struct Frame {
+    Key key;
+    std::vector<ExprId> arguments, values, results;
+};
+
+struct Specialiser;
+
+// Which expressions of a function its results need, for given arguments: of a choice whose condition is known, only the
+// side that is taken, so that nothing is made of the other.
+class Demand {
+  public:
+    Demand(const Function& from, Copy& copy, Builder& b, std::span<const ExprId> arguments, Specialiser& owner)
+        : from_(from), copy_(copy), b_(b), arguments_(arguments), owner_(owner), state_(from.exprs.size()) {
+        first_ = static_cast<std::uint32_t>(state_.size());
+        for (const ResultValue& r : from_.results) need(r.value);
+        for (std::uint32_t i = static_cast<std::uint32_t>(state_.size()); i-- > 0;)
+            if (state_[i] & kNeeded) visit(ExprId(i));
+    }
+    bool needs(ExprId e) const { return state_[e.index] & kNeeded; }
+    // The first one that is needed.
+    std::uint32_t first() const { return first_; }
+    // The operand that the expression is, none where both may be.
+    ExprId chosen(ExprId e) const {
+        const std::uint8_t side = state_[e.index] & kSide;
+        return side ? from_.operand(e, side - 1u) : ExprId();
+    }
+
+  private:
+    enum : std::uint8_t { kSide = 3, kNeeded = 4, kNotConstant = 8, kNotMade = 16 };  // kSide: operand + 1
+    static constexpr int kMaxDepth = 24;  // of a condition that is worth a look
+
+    void need(ExprId e) {
+        state_[e.index] |= kNeeded;
+        first_ = std::min(first_, e.index);
+    }
+
+    void choose(ExprId e, std::size_t operand) {
+        state_[e.index] |= static_cast<std::uint8_t>(operand + 1);
+        need(from_.operand(e, operand));
+    }
+
+    void visit(ExprId id) {
+        const Expr& e = from_[id];
+        if (e.op == Op::Select) {
+            if (ExprId c = constant(from_.operand(id, 0), 0))
+                return choose(id, b_.function().constantWords(c)[0] ? 1 : 2);
+        } else if (e.op == Op::ClosureMix) {
+            ExprId t = constant(from_.operand(id, 2), 0);
+            if (t && isAll(t, 0.0f)) return choose(id, 0);
+            if (t && isAll(t, 1.0f)) return choose(id, 1);
+        }
+        for (ExprId o : from_.operandsOf(e)) need(o);
+    }
+
+    bool isAll(ExprId e, float v) const {
+        for (std::uint32_t w : b_.function().constantWords(e))
+            if (w != std::bit_cast<std::uint32_t>(v)) return false;
+        return true;
+    }
+
+    // The copy of an expression that is constant for these arguments, made on the spot; none where it is not.
+    ExprId constant(ExprId id, int depth);
+    // Makes an expression that needs no call or loop; false where it does, or is too deep.
+    bool make(ExprId id, int depth);
+
+    const Function& from_;
+    Copy& copy_;
+    Builder& b_;
+    std::span<const ExprId> arguments_;
+    Specialiser& owner_;
+    std::vector<std::uint8_t> state_;
+    std::uint32_t first_;
 };
 
 struct Specialiser {
     Module& module;
     const std::unordered_set<Name>& baked;
     Diagnostics& diagnostics;
-    std::map<std::vector<std::uint32_t>, Name> clones{};
-    std::unordered_map<Name, Clone> known{};  // clones made here: nothing is left to specialise in them
-    int depth = 0;
+    bool isPartial = false;  // only expands; what is known of arguments is asked later
+    // Small clones are expanded where they are called and so have no name; the others are the module's.
+    struct Clone {
+        Function small;
+        Function* named = nullptr;
+        const Function& function() const { return named ? *named : small; }
+    };
+    std::unordered_map<Key, Clone, KeyHash> clones{};
+    std::unordered_map<Name, const Key*> known{};  // clones made here: nothing is left to specialise in them
+    std::deque<Frame> frames{};                    // by depth
+    std::size_t depth = 0;
     bool ok = true;
 
     bool run(Name entry) {
@@ -56,53 +171,75 @@ struct Specialiser {
         fresh.name = entry;
         fresh.params = old->params;
         fresh.comment = old->comment;
-        Builder b(module, fresh);
-        std::vector<ExprId> arguments, results;
-        for (std::uint32_t i = 0; i < fresh.params.size(); i++) arguments.push_back(b.param(i));
-        expand(*old, b, arguments, results);
-        for (std::size_t i = 0; i < results.size(); i++) b.addResult(old->results[i].name, results[i]);
+        rebuild(*old, fresh);
         module.put(std::move(fresh));
         while (ok && share(entry)) {
         }
         return ok;
     }
 
-    // Copies a function's expressions to where `b` builds, with arguments for parameters.
+    // Fills a function that has the parameters of another one with the other's results.
+    void rebuild(const Function& old, Function& fresh) {
+        Builder b(module, fresh);
+        b.reserve(old.exprs.size());
+        std::vector<ExprId> arguments, results;
+        for (std::uint32_t i = 0; i < fresh.params.size(); i++) arguments.push_back(b.param(i));
+        expand(old, b, arguments, results);
+        for (std::size_t i = 0; i < results.size(); i++) b.addResult(old.results[i].name, results[i]);
+        compact(fresh);
+    }
+
+    // Copies what a function's results need to where `b` builds, with arguments for parameters.
     void expand(const Function& from, Builder& b, std::span<const ExprId> arguments, std::vector<ExprId>& made) {
         Copy copy(from, b);
-        std::vector<bool> live = reachable(from);
-        std::map<std::uint32_t, Tuple> tuples;  // of calls with several results, by source expression
-        for (std::uint32_t i = 0; i < from.exprs.size(); i++) {
-            if (!live[i]) continue;
+        Demand demand(from, copy, b, arguments, *this);
+        std::vector<Tuple> tuples;
+        std::vector<ExprId> tupleResults;
+        for (std::uint32_t i = demand.first(); i < from.exprs.size(); i++) {
             ExprId id(i);
+            if (!demand.needs(id) || copy[id]) continue;
             const Expr& e = from.exprs[i];
-            if (e.op == Op::Param) {
-                copy.set(id, arguments[e.payload]);
-            } else if (e.op == Op::Call) {
+            if (e.op == Op::Call) {
                 std::uint32_t before = size(b);
-                std::vector<ExprId> results = call(b, e, copy.operands(id));
+                const std::vector<ExprId>& results = call(b, e, copy.operands(id));
                 if (e.type != Type::Tuple) {
                     copy.set(id, results[0]);
                     name(b, results[0], from.hints[i], before);
                 } else {
-                    tuples[i] = {before, std::move(results)};
+                    tuples.push_back({i, before, tupleResults.size(), results.size()});
+                    tupleResults.insert(tupleResults.end(), results.begin(), results.end());
                 }
-            } else if (e.op == Op::Result && tuples.count(from.operand(id, 0).index)) {
-                auto& [before, results] = tuples[from.operand(id, 0).index];
-                copy.set(id, e.payload < results.size() ? results[e.payload] : b.null(e.type));
-                name(b, copy[id], from.hints[i], before);
-            } else if (e.op == Op::Known) {
-                ExprId x = copy[from.operand(id, 0)];
-                copy.set(id, b.function().isConstant(x) ? x : b.boolean(false));
-            } else if (e.op == Op::Uniform && baked.count(Name(e.payload))) {
-                copy.set(id, bake(b, Name(e.payload), e.type));
-                if (from.hints[i]) b.hint(copy[id], from.hints[i]);
+            } else if (e.op == Op::Result && from[from.operand(id, 0)].op == Op::Call) {
+                const std::uint32_t callee = from.operand(id, 0).index;
+                auto t = std::find_if(tuples.rbegin(), tuples.rend(), [&](const Tuple& x) { return x.call == callee; });
+                const bool isKnown = t != tuples.rend() && e.payload < t->count;
+                copy.set(id, isKnown ? tupleResults[t->first + e.payload] : b.null(e.type));
+                if (isKnown) name(b, copy[id], from.hints[i], t->before);
             } else {
-                copy.one(id);
+                plain(copy, b, from, id, arguments, demand.chosen(id));
             }
         }
         made.clear();
         for (const ResultValue& r : from.results) made.push_back(copy[r.value]);
+    }
+
+    // Copies an expression that calls nothing; `chosen` is the operand that it is, where that is known.
+    void plain(Copy& copy, Builder& b, const Function& from, ExprId id, std::span<const ExprId> arguments,
+               ExprId chosen) {
+        const Expr& e = from[id];
+        if (e.op == Op::Param) return copy.set(id, arguments[e.payload]);
+        if (chosen) {
+            copy.set(id, copy[chosen]);
+        } else if (e.op == Op::Known && !isPartial) {
+            ExprId x = copy[from.operand(id, 0)];
+            copy.set(id, b.function().isConstant(x) ? x : b.boolean(false));
+        } else if (e.op == Op::Uniform && !baked.empty() && baked.count(Name(e.payload))) {
+            copy.set(id, bake(b, Name(e.payload), e.type));
+        } else {
+            copy.one(id);
+            return;
+        }
+        if (from.hints[id.index]) b.hint(copy[id], from.hints[id.index]);
     }
 
     static std::uint32_t size(Builder& b) { return static_cast<std::uint32_t>(b.function().exprs.size()); }
@@ -123,37 +260,52 @@ struct Specialiser {
         return b.constant(type, u->values);
     }
 
-    // The results of a call, one for each of the callee's.
-    std::vector<ExprId> call(Builder& b, const Expr& e, std::span<const ExprId> operands) {
-        std::vector<ExprId> arguments(operands.begin(), operands.end()), results;
+    // The results of a call, one for each of the callee's; valid until the next call of this depth.
+    const std::vector<ExprId>& call(Builder& b, const Expr& e, std::span<const ExprId> operands) {
+        if (frames.size() <= depth) frames.emplace_back();
+        Frame& frame = frames[depth];
+        frame.arguments.assign(operands.begin(), operands.end());
+        frame.results.clear();
         const Function* callee = module.find(Name(e.payload));
         if (!callee || depth >= kMaxDepth || !ok) {  // after an error the rest is not worth the work
-            std::string callName(module.names->text(Name(e.payload)));
-            if (ok)
-                diagnostics.error("bad-call", callee ? "calls nest too deeply in '" + callName + "'"
-                                                     : "there is no function '" + callName + "'");
-            ok = false;
-            if (callee)
-                for (const ResultValue& r : callee->results) results.push_back(b.null(r.type));
-            else
-                results.push_back(b.null(e.type == Type::Tuple ? Type::Float : e.type));
-            return results;
+            refuse(b, e, callee, frame.results);
+            return frame.results;
         }
         depth++;
-        if (mustExpand(*callee)) {
-            expand(*callee, b, arguments, results);
+        if (mustExpand(*callee) || isSmall(*callee)) {
+            expand(*callee, b, frame.arguments, frame.results);
+        } else if (isPartial) {
+            keepCall(b, e, *callee, frame);
         } else {
-            const Function& clone = known.count(callee->name) ? *callee : cloneFor(b, *callee, arguments);
+            const Function& clone = known.count(callee->name) ? *callee : cloneFor(b, *callee, frame);
             if (isSmall(clone))
-                expand(clone, b, arguments, results);
+                expand(clone, b, frame.arguments, frame.results);
             else
-                results = callClone(b, clone, arguments);
+                callClone(b, clone, frame);
         }
         depth--;
-        return results;
+        return frame.results;
     }
 
-    bool mustExpand(const Function& f) const {
+    static void keepCall(Builder& b, const Expr& e, const Function& callee, Frame& frame) {
+        ExprId made = b.call(callee.name, e.type, frame.arguments);
+        for (std::uint32_t k = 0; k < callee.results.size(); k++)
+            frame.results.push_back(e.type == Type::Tuple ? b.result(made, k, callee.results[k].type) : made);
+    }
+
+    void refuse(Builder& b, const Expr& e, const Function* callee, std::vector<ExprId>& results) {
+        std::string callName(module.names->text(Name(e.payload)));
+        if (ok)
+            diagnostics.error("bad-call", callee ? "calls nest too deeply in '" + callName + "'"
+                                                 : "there is no function '" + callName + "'");
+        ok = false;
+        if (callee)
+            for (const ResultValue& r : callee->results) results.push_back(b.null(r.type));
+        else
+            results.push_back(b.null(e.type == Type::Tuple ? Type::Float : e.type));
+    }
+
+    static bool mustExpand(const Function& f) {
         if (f.isInline) return true;
         for (const Param& p : f.params)
             if (isClosure(p.type)) return true;
@@ -164,99 +316,87 @@ struct Specialiser {
         return false;
     }
 
-    bool isSmall(const Function& f) const {
+    static bool isSmall(const Function& f) {
         std::size_t operations = 0;
-        std::vector<bool> live = reachable(f);
-        for (std::size_t i = 0; i < f.exprs.size(); i++) {
-            if (!live[i]) continue;
-            Op op = f.exprs[i].op;
-            if (op == Op::Loop || op == Op::Lights) return false;
-            if (op > Op::Uniform && op != Op::Swizzle && op != Op::Retype && op != Op::Result) operations++;
+        for (const Expr& e : f.exprs) {
+            if (e.op == Op::Loop || e.op == Op::Lights) return false;
+            operations += isWork(e.op) && e.op != Op::Swizzle;
+            if (operations > kSmall) return false;
         }
-        return operations <= kSmall;
+        return true;
     }
+    static bool isWork(Op op) { return op > Op::Uniform && op != Op::Result && op != Op::Retype; }
 
-    ExprId filler(const Builder& b, ExprId e) const {
-        const Expr& x = b.function()[e];
+    static ExprId filler(const Function& f, ExprId e) {
+        const Expr& x = f[e];
         if (x.op != Op::Make || x.operandCount != 1 || !isVector(x.type)) return {};
-        return b.function().operand(e, 0);
+        return f.operand(e, 0);
     }
 
-    Argument argumentOf(const Function& caller, Builder& b, ExprId e) const {
+    static Argument argumentOf(const Function& caller, ExprId e) {
         const Expr& x = caller[e];
-        if (x.op == Op::Constant) {
-            Argument a{Shape::Constant, x.type, {}};
-            if (componentCount(x.type)) {
-                auto words = caller.constantWords(e);
-                a.words.assign(words.begin(), words.end());
-            } else {
-                a.words.push_back(x.payload);
-            }
-            return a;
-        }
-        return {filler(b, e) ? Shape::Filled : Shape::Any, x.type, {}};
+        if (x.op != Op::Constant) return {filler(caller, e) ? Shape::Filled : Shape::Any, x.type, {}};
+        if (componentCount(x.type)) return {Shape::Constant, x.type, caller.constantWords(e)};
+        return {Shape::Constant, x.type, std::span(&x.payload, 1)};
     }
 
-    // Finds or makes the clone for these arguments; leaves in `arguments` those that the clone still takes.
-    const Function& cloneFor(Builder& b, const Function& callee, std::vector<ExprId>& arguments) {
-        Clone clone{callee.name, {}};
-        std::vector<ExprId> kept;
-        for (ExprId& e : arguments) {
-            clone.arguments.push_back(argumentOf(b.function(), b, e));
-            Shape shape = clone.arguments.back().shape;
-            if (shape != Shape::Constant) kept.push_back(shape == Shape::Filled ? filler(b, e) : e);
+    // Finds or makes the clone for these arguments; leaves in the frame those that the clone still takes.
+    const Function& cloneFor(Builder& b, const Function& callee, Frame& frame) {
+        frame.key.assign(1, callee.name.index);
+        std::size_t kept = 0;
+        for (ExprId e : frame.arguments) {
+            Argument a = argumentOf(b.function(), e);
+            addArgument(frame.key, a);
+            if (a.shape != Shape::Constant)
+                frame.arguments[kept++] = a.shape == Shape::Filled ? filler(b.function(), e) : e;
         }
-        arguments = std::move(kept);
-        return *module.findOwn(nameOf(callee, clone));
+        frame.arguments.resize(kept);
+        return clone(callee, frame).function();
     }
 
-    // The name of a clone, which is made if it is new.
-    Name nameOf(const Function& callee, const Clone& clone) {
-        std::vector<std::uint32_t> key{clone.callee.index};
-        for (const Argument& a : clone.arguments) {
-            key.push_back(static_cast<std::uint32_t>(a.shape));
-            key.insert(key.end(), a.words.begin(), a.words.end());
-        }
-        auto found = clones.find(key);
-        if (found == clones.end()) found = clones.emplace(key, make(callee, clone)).first;
-        return found->second;
-    }
-
-    Name make(const Function& callee, const Clone& how) {
+    // The clone of the frame's key, which is made if it is new.
+    const Clone& clone(const Function& callee, Frame& frame) {
+        auto [found, isNew] = clones.try_emplace(frame.key);
+        if (!isNew) return found->second;
+        Clone& made = found->second;
+        make(callee, found->first, frame, made.small);
+        if (isSmall(made.small)) return made;
         std::string_view stem = module.names->text(callee.name);
         stem = stem.substr(0, stem.find('@'));
-        Function clone;
         int number = 0;
-        do clone.name = module.names->intern(fmt::format("{}@{}", stem, number++));
-        while (module.findOwn(clone.name));
-        module.add(clone.name);  // takes the name: making the body may make further clones
-        for (std::size_t i = 0; i < how.arguments.size(); i++) {
-            Shape shape = how.arguments[i].shape;
-            if (shape == Shape::Constant) continue;
+        do made.small.name = module.names->intern(fmt::format("{}@{}", stem, number++));
+        while (module.findOwn(made.small.name));
+        made.named = &module.put(std::move(made.small));
+        known[made.named->name] = &found->first;
+        return made;
+    }
+
+    void make(const Function& callee, const Key& key, Frame& frame, Function& clone) {
+        eachArgument(key, [&](std::uint32_t i, const Argument& a) {
+            if (a.shape == Shape::Constant) return;
             clone.params.push_back(
-                {callee.params[i].name, shape == Shape::Filled ? Type::Float : callee.params[i].type});
-        }
+                {callee.params[i].name, a.shape == Shape::Filled ? Type::Float : callee.params[i].type});
+        });
         clone.comment = callee.comment;
         Builder b(module, clone);
-        std::vector<ExprId> values, results;
+        b.reserve(callee.exprs.size());
+        frame.values.clear();
         std::uint32_t next = 0;
-        for (std::size_t i = 0; i < how.arguments.size(); i++) {
-            const Argument& a = how.arguments[i];
+        eachArgument(key, [&](std::uint32_t i, const Argument& a) {
             if (a.shape == Shape::Filled)
-                values.push_back(b.make(callee.params[i].type, {b.param(next++)}));
+                frame.values.push_back(b.make(callee.params[i].type, {b.param(next++)}));
             else if (a.shape == Shape::Any)
-                values.push_back(b.param(next++));
-            else if (componentCount(a.type))
-                values.push_back(b.constant(a.type, a.words));
+                frame.values.push_back(b.param(next++));
             else
-                values.push_back(b.emit(Op::Constant, a.type, {}, a.words[0]));
-        }
-        expand(callee, b, values, results);
-        for (std::size_t i = 0; i < results.size(); i++) b.addResult(callee.results[i].name, results[i]);
-        Name name = clone.name;
-        module.put(std::move(clone));
-        known[name] = how;
-        return name;
+                frame.values.push_back(constant(b, a));
+        });
+        expand(callee, b, frame.values, frame.results);
+        for (std::size_t i = 0; i < frame.results.size(); i++) b.addResult(callee.results[i].name, frame.results[i]);
+        compact(clone);
+    }
+
+    static ExprId constant(Builder& b, const Argument& a) {
+        return componentCount(a.type) ? b.constant(a.type, a.words) : b.emit(Op::Constant, a.type, {}, a.words[0]);
     }
 
     // Clones of one function that do the same work on different numbers become one that takes the numbers: less text
@@ -265,54 +405,51 @@ struct Specialiser {
         std::vector<Name> live = liveClones(entry);
         for (std::size_t i = 0; i < live.size(); i++)
             for (std::size_t j = i + 1; j < live.size(); j++)
-                if (Clone common; haveCommon(known[live[i]], known[live[j]], common)) {
-                    const Function* callee = module.find(common.callee);
-                    Name merged = nameOf(*callee, common);
-                    std::size_t apart = std::min(workOf(live[i]), workOf(live[j]));
-                    if (workOf(merged) > apart + apart / 8 + 2) continue;
-                    redirect(entry, live[i], merged);
-                    redirect(entry, live[j], merged);
-                    return true;
-                }
+                if (mergedBoth(entry, live[i], live[j])) return true;
         return false;
     }
 
-    // The clones that the entry reaches, callers before callees, as far as calls are needed.
+    bool mergedBoth(Name entry, Name x, Name y) {
+        if (frames.empty()) frames.emplace_back();
+        if (!haveCommon(*known[x], *known[y], frames[0].key)) return false;
+        const Function* callee = module.find(Name(frames[0].key[0]));
+        depth = 1;
+        const Function* merged = clone(*callee, frames[0]).named;
+        depth = 0;
+        std::size_t apart = std::min(workOf(x), workOf(y));
+        if (!merged || workOf(merged->name) > apart + apart / 8 + 2) return false;
+        redirect(entry, x, merged->name);
+        redirect(entry, y, merged->name);
+        return true;
+    }
+
+    // The clones that the entry reaches, callers before callees.
     std::vector<Name> liveClones(Name entry) {
-        std::vector<Name> order{entry};
-        for (std::size_t i = 0; i < order.size(); i++) {
-            const Function& f = *module.findOwn(order[i]);
-            std::vector<bool> live = reachable(f);
-            for (std::size_t k = 0; k < f.exprs.size(); k++) {
-                Name callee(f.exprs[k].payload);
-                if (live[k] && f.exprs[k].op == Op::Call &&
-                    std::find(order.begin(), order.end(), callee) == order.end())
-                    order.push_back(callee);
-            }
-        }
-        std::vector<Name> found;
+        std::vector<Name> order{entry}, found;
+        for (std::size_t i = 0; i < order.size(); i++)
+            for (const Expr& e : module.findOwn(order[i])->exprs)
+                if (e.op == Op::Call && std::find(order.begin(), order.end(), Name(e.payload)) == order.end())
+                    order.push_back(Name(e.payload));
         for (Name n : order)
             if (known.count(n)) found.push_back(n);
         return found;
     }
 
     // The arguments under which one clone serves both: what differs in numbers is taken as a parameter.
-    bool haveCommon(const Clone& x, const Clone& y, Clone& common) const {
-        if (x.callee != y.callee) return false;
-        common.callee = x.callee;
-        for (std::size_t i = 0; i < x.arguments.size(); i++) {
-            const Argument &a = x.arguments[i], &b = y.arguments[i];
-            if (a == b) {
-                common.arguments.push_back(a);
-                continue;
-            }
-            if (info(a.type).scalar != Scalar::Float) return false;  // a truth, count or text decides too much
-            // A vector of one number stays one: what is known of it in a function must hold in those that it calls.
-            Shape shape = shared(a);
-            if (shape != shared(b)) return false;
-            common.arguments.push_back({shape, a.type, {}});
-        }
-        return true;
+    static bool haveCommon(const Key& x, const Key& y, Key& common) {
+        if (x[0] != y[0]) return false;
+        std::vector<Argument> other;
+        eachArgument(y, [&](std::uint32_t, const Argument& a) { other.push_back(a); });
+        bool can = true;
+        common.assign(1, x[0]);
+        eachArgument(x, [&](std::uint32_t i, const Argument& a) {
+            if (a.isSame(other[i])) return addArgument(common, a);
+            // A truth, count or text decides too much. A vector of one number stays one: what is known of it in a
+            // function must hold in those that it calls.
+            can = can && info(a.type).scalar == Scalar::Float && shared(a) == shared(other[i]);
+            addArgument(common, {shared(a), a.type, {}});
+        });
+        return can;
     }
 
     // How a constant is taken when it becomes a parameter: a vector that repeats one number, as that number.
@@ -323,90 +460,133 @@ struct Specialiser {
 
     // Operations of a function with all that it calls.
     std::size_t workOf(Name name) const {
-        const Function& f = *module.findOwn(name);
         std::size_t work = 0;
-        std::vector<bool> live = reachable(f);
-        for (std::size_t i = 0; i < f.exprs.size(); i++) {
-            const Expr& e = f.exprs[i];
-            if (!live[i] || e.op <= Op::Uniform || e.op == Op::Result || e.op == Op::Retype) continue;
-            work += 1 + (e.op == Op::Call ? workOf(Name(e.payload)) : 0);
-        }
+        for (const Expr& e : module.findOwn(name)->exprs)
+            if (isWork(e.op)) work += 1 + (e.op == Op::Call ? workOf(Name(e.payload)) : 0);
         return work;
     }
 
-    // Makes every live call of `from` one of `to`, which takes more arguments.
+    // Makes every call of `from` one of `to`, which takes more arguments.
     void redirect(Name entry, Name from, Name to) {
         std::vector<Name> callers = liveClones(entry);
         callers.push_back(entry);
         for (Name name : callers) {
             Function* f = module.findOwn(name);
-            bool calls = false;
-            for (const Expr& e : f->exprs) calls = calls || (e.op == Op::Call && Name(e.payload) == from);
-            if (!calls) continue;
+            auto calls = [&](const Expr& e) { return e.op == Op::Call && Name(e.payload) == from; };
+            if (std::none_of(f->exprs.begin(), f->exprs.end(), calls)) continue;
             Function fresh;
             fresh.name = f->name;
             fresh.params = f->params;
             fresh.comment = f->comment;
             Builder b(module, fresh);
+            b.reserve(f->exprs.size());
             Copy copy(*f, b);
-            std::vector<bool> live = reachable(*f);
             for (std::uint32_t i = 0; i < f->exprs.size(); i++) {
-                if (!live[i]) continue;
                 const Expr& e = f->exprs[i];
-                if (e.op != Op::Call || Name(e.payload) != from) {
+                if (!calls(e)) {
                     copy.one(ExprId(i));
                     continue;
                 }
-                copy.set(ExprId(i), b.call(to, e.type, widened(b, copy.operands(ExprId(i)), known[from], known[to])));
+                copy.set(ExprId(i), b.call(to, e.type, widened(b, copy.operands(ExprId(i)), *known[from], *known[to])));
                 if (f->hints[i]) b.hint(copy[ExprId(i)], f->hints[i]);
             }
             for (const ResultValue& r : f->results) b.addResult(r.name, copy[r.value]);
+            compact(fresh);
             *f = std::move(fresh);
         }
     }
 
-    std::vector<ExprId> widened(Builder& b, std::span<const ExprId> old, const Clone& from, const Clone& to) {
+    // The arguments of a call of the clone `from` as those of the clone `to`, which knows less of some.
+    static std::vector<ExprId> widened(Builder& b, std::span<const ExprId> old, const Key& from, const Key& to) {
+        std::vector<Argument> wanted;
+        eachArgument(to, [&](std::uint32_t, const Argument& a) { wanted.push_back(a); });
         std::vector<ExprId> arguments;
         std::size_t next = 0;
-        for (std::size_t i = 0; i < to.arguments.size(); i++) {
-            const Argument& a = from.arguments[i];
+        eachArgument(from, [&](std::uint32_t i, const Argument& a) {
             ExprId given = a.shape == Shape::Constant ? ExprId() : old[next++];
-            Shape wanted = to.arguments[i].shape;
-            if (wanted == Shape::Constant) continue;
-            if (given && a.shape == Shape::Filled && wanted == Shape::Any)
+            Shape shape = wanted[i].shape;
+            if (shape == Shape::Constant) return;
+            if (given && a.shape == Shape::Filled && shape == Shape::Any)
                 given = b.make(a.type, {given});
-            else if (!given && wanted == Shape::Filled)
-                given = b.constant(Type::Float, std::span(a.words).first(1));
+            else if (!given && shape == Shape::Filled)
+                given = b.constant(Type::Float, a.words.first(1));
             else if (!given)
-                given = b.constant(a.type, a.words);
+                given = constant(b, a);
             arguments.push_back(given);
-        }
+        });
         return arguments;
     }
 
     // A call of a clone; results that are constants or arguments need no call.
-    std::vector<ExprId> callClone(Builder& b, const Function& clone, const std::vector<ExprId>& arguments) {
-        std::vector<ExprId> results;
+    static void callClone(Builder& b, const Function& clone, Frame& frame) {
         Type type = clone.results.size() == 1 ? clone.results[0].type : Type::Tuple;
-        ExprId made = b.call(clone.name, type, arguments);
+        ExprId made = b.call(clone.name, type, frame.arguments);
+        frame.results.clear();
         for (std::uint32_t i = 0; i < clone.results.size(); i++) {
             ExprId value = clone.results[i].value;
             const Expr& x = clone[value];
             if (x.op == Op::Constant && componentCount(x.type))
-                results.push_back(b.constant(x.type, clone.constantWords(value)));
+                frame.results.push_back(b.constant(x.type, clone.constantWords(value)));
             else if (x.op == Op::Param)
-                results.push_back(arguments[x.payload]);
+                frame.results.push_back(frame.arguments[x.payload]);
             else
-                results.push_back(type == Type::Tuple ? b.result(made, i, x.type) : made);
+                frame.results.push_back(type == Type::Tuple ? b.result(made, i, x.type) : made);
         }
-        return results;
     }
 };
+
+ExprId Demand::constant(ExprId id, int depth) {
+    std::uint8_t& state = state_[id.index];
+    if (!copy_[id] && !(state & kNotConstant)) {
+        const Expr& e = from_[id];
+        bool can = depth < kMaxDepth && e.op != Op::Call && e.op != Op::Result && e.op != Op::Loop &&
+                   e.op != Op::Lights && e.op != Op::LoopArg && e.op != Op::Context && e.op != Op::Attribute &&
+                   !isClosure(e.type);
+        if (e.op == Op::Param) can = can && b_.function().isConstant(arguments_[e.payload]);
+        if (e.op == Op::Uniform) can = can && owner_.baked.count(Name(e.payload));
+        if (e.op == Op::Known) can = can && !owner_.isPartial && make(from_.operand(id, 0), depth + 1);
+        for (std::size_t k = 0; can && e.op != Op::Known && k < e.operandCount; k++)
+            can = static_cast<bool>(constant(from_.operand(id, k), depth + 1));
+        if (can) owner_.plain(copy_, b_, from_, id, arguments_, {});
+    }
+    if (copy_[id] && b_.function().isConstant(copy_[id])) return copy_[id];
+    state |= kNotConstant;
+    return {};
+}
+
+bool Demand::make(ExprId id, int depth) {
+    if (copy_[id]) return true;
+    const Expr& e = from_[id];
+    std::uint8_t& state = state_[id.index];
+    bool can = !(state & kNotMade) && depth < kMaxDepth && e.op != Op::Call && e.op != Op::Result && e.op != Op::Loop &&
+               e.op != Op::Lights && e.op != Op::Known && !isClosure(e.type);
+    for (std::size_t k = 0; can && k < e.operandCount; k++) can = make(from_.operand(id, k), depth + 1);
+    if (!can) {
+        state |= kNotMade;
+        return false;
+    }
+    owner_.plain(copy_, b_, from_, id, arguments_, {});
+    return true;
+}
 
 }  // namespace
 
 bool specialise(Module& module, Name entry, const std::unordered_set<Name>& baked, Diagnostics& diagnostics) {
     return Specialiser{module, baked, diagnostics}.run(entry);
+}
+
+void flatten(Module& module, Function& function) {
+    Diagnostics ignored;  // a call of what is missing stays
+    const std::unordered_set<Name> none;
+    Specialiser s{module, none, ignored};
+    s.isPartial = true;
+    Function fresh;
+    fresh.name = function.name;
+    fresh.params = function.params;
+    fresh.isInline = function.isInline;
+    fresh.comment = function.comment;
+    s.rebuild(function, fresh);
+    if (s.ok) function = std::move(fresh);
 }
 
 }  // namespace shaderx::passes

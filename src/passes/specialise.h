@@ -19,4 +19,8 @@ namespace shaderx::passes {
 // calls too deep, is an error.
 bool specialise(ir::Module& module, Name entry, const std::unordered_set<Name>& baked, Diagnostics& diagnostics);
 
+// Expands in a function of a library what specialise would expand whatever the arguments are: done once, when the
+// library is made, it is not done for every material.
+void flatten(ir::Module& module, ir::Function& function);
+
 }  // namespace shaderx::passes

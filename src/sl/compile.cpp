@@ -246,7 +246,10 @@ bool Compiler::run(std::span<const SourceFile> files) {
     for (std::uint32_t i : order)
         if (!functions[i].isInline && isExpression(decl(i), units[sources[i].unit].tree))
             functions[i].isInline = isSmall(functions[i]);
-    for (ir::Function& f : functions) module.put(std::move(f));
+    for (ir::Function& f : functions) {
+        ir::compact(f);
+        module.put(std::move(f));
+    }
     return true;
 }
 
@@ -276,6 +279,7 @@ bool compileInline(ir::Module& module, Name name, std::span<const ir::Param> par
     f.isInline = true;
     lowerInline(program, 0, results, f);
     if (diagnostics.errorCount() != before) return false;
+    ir::compact(f);
     module.put(std::move(f));
     return true;
 }

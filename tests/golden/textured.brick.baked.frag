@@ -134,9 +134,8 @@ void main()
 {
     float brick_roughness = texture(brick_roughness_file, 2.0 * vd.texcoord_0).x;
     vec3 brick_normal_picture = texture(brick_normal_picture_file, vd.texcoord_0).xyz;
-    vec3 normal = normalize(vd.normalWorld);
-    vec3 coat_turned = normalize(vd.tangentWorld);
-    vec3 brick_normal = apply_normal_map(brick_normal_picture, normal, coat_turned, normalize(vd.bitangentWorld));
+    vec3 coat_tangent = normalize(vd.tangentWorld);
+    vec3 brick_normal = apply_normal_map(brick_normal_picture, normalize(vd.normalWorld), coat_tangent, normalize(vd.bitangentWorld));
     vec3 base_color_positive = max(srgb_to_linear(texture(brick_color_file, vd.texcoord_0).xyz), 0.0);
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(brick_normal, -V, brick_normal);

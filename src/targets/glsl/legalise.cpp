@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "passes/copy.h"
 #include "targets/glsl/glsl.h"
 
@@ -73,16 +75,16 @@ struct Legaliser {
         fresh.name = from.name;
         fresh.comment = from.comment;
         for (const Param& p : from.params) fresh.params.push_back({p.name, erased(p.type)});
-        std::vector<bool> live = reachable(from);
-        for (std::uint32_t i = 0; i < from.exprs.size(); i++)
-            if (live[i]) one(ExprId(i));
+        b.reserve(from.exprs.size());
+        for (std::uint32_t i = 0; i < from.exprs.size(); i++) one(ExprId(i));
         for (const ResultValue& r : from.results) b.addResult(r.name, copy[r.value]);
+        compact(fresh);
     }
 
     void one(ExprId id) {
         const Expr& e = from[id];
         Type type = erased(e.type);
-        std::vector<ExprId> o(copy.operands(id).begin(), copy.operands(id).end());
+        std::span<const ExprId> o = copy.operands(id);
         ExprId made;
         if (e.op == Op::Retype && b.type(o[0]) == type) {
             made = o[0];
@@ -125,19 +127,22 @@ struct Legaliser {
         return b.make(type, columns);
     }
 
-    ExprId componentwise(Op op, Type type, std::vector<ExprId>& o) {
+    ExprId componentwise(Op op, Type type, std::span<const ExprId> operands) {
+        ExprId o[3];
+        const std::size_t n = operands.size();
+        std::copy(operands.begin(), operands.end(), o);
         bool both = op == Op::Smoothstep || op == Op::Clamp;  // two edges: both scalar or both vectors
         bool anyVector = false;
         std::size_t first = op == Op::Clamp ? 1 : 0;
         for (std::size_t k = first; both && k < first + 2; k++) anyVector = anyVector || isVector(b.type(o[k]));
         bool spread = false;
-        for (std::size_t k = 0; k < o.size(); k++) {
+        for (std::size_t k = 0; k < n; k++) {
             if (isVector(b.type(o[k])) || (takesScalar(op, k) && !(both && anyVector))) continue;
             // Made without the rules that would narrow it again.
             o[k] = b.emit(Op::Make, type, {o[k]});
             spread = true;
         }
-        return spread ? b.emitRaw(op, type, o) : b.emit(op, type, o);
+        return spread ? b.emitRaw(op, type, std::span(o, n)) : b.emit(op, type, std::span<const ExprId>(o, n));
     }
 };
 

@@ -1,7 +1,6 @@
 #include "targets/glsl/names.h"
 
-#include <algorithm>
-#include <vector>
+#include <array>
 
 namespace shaderx::glsl {
 
@@ -10,46 +9,42 @@ using ir::Type;
 
 // Keywords and built-in functions of GLSL 1.00 to 4.60 and ESSL (The OpenGL Shading Language 4.60, sections 3.6, 8),
 // and what hosts bind.
-static const std::vector<std::string_view>& words() {
-    static const std::vector<std::string_view> all = [] {
-        std::vector<std::string_view> w = {
-            "active", "asm", "atomic_uint", "attribute", "bool", "break", "buffer", "bvec2", "bvec3", "bvec4", "case",
-            "cast", "centroid", "class", "coherent", "common", "const", "continue", "default", "discard", "dmat2",
-            "dmat2x2", "dmat2x3", "dmat2x4", "dmat3", "dmat3x2", "dmat3x3", "dmat3x4", "dmat4", "dmat4x2", "dmat4x3",
-            "dmat4x4", "do", "double", "dvec2", "dvec3", "dvec4", "else", "enum", "extern", "external", "false",
-            "filter", "fixed", "flat", "float", "for", "fvec2", "fvec3", "fvec4", "goto", "half", "highp", "hvec2",
-            "hvec3", "hvec4", "if", "iimage1D", "iimage2D", "iimage3D", "iimageCube", "image1D", "image2D", "image3D",
-            "imageBuffer", "imageCube", "in", "inline", "inout", "input", "int", "interface", "invariant", "isampler1D",
-            "isampler2D", "isampler3D", "isamplerBuffer", "isamplerCube", "ivec2", "ivec3", "ivec4", "layout", "long",
-            "lowp", "mat2", "mat2x2", "mat2x3", "mat2x4", "mat3", "mat3x2", "mat3x3", "mat3x4", "mat4", "mat4x2",
-            "mat4x3", "mat4x4", "mediump", "namespace", "noinline", "noperspective", "out", "output", "partition",
-            "patch", "precise", "precision", "public", "readonly", "resource", "restrict", "return", "sample",
-            "sampler1D", "sampler2D", "sampler2DArray", "sampler2DRect", "sampler2DShadow", "sampler3D",
-            "sampler3DRect", "samplerBuffer", "samplerCube", "shared", "short", "sizeof", "smooth", "static", "struct",
-            "subroutine", "superp", "switch", "template", "this", "true", "typedef", "uint", "uniform", "union",
-            "unsigned", "usampler1D", "usampler2D", "usampler3D", "using", "uvec2", "uvec3", "uvec4", "varying", "vec2",
-            "vec3", "vec4", "void", "volatile", "while", "writeonly", "main", "vd", "VertexData",
-            // built-in functions
-            "abs", "acos", "acosh", "all", "any", "asin", "asinh", "atan", "atanh", "barrier", "bitCount",
-            "bitfieldExtract", "bitfieldInsert", "bitfieldReverse", "ceil", "clamp", "cos", "cosh", "cross", "dFdx",
-            "dFdxCoarse", "dFdxFine", "dFdy", "dFdyCoarse", "dFdyFine", "degrees", "determinant", "distance", "dot",
-            "equal", "exp", "exp2", "faceforward", "findLSB", "findMSB", "floatBitsToInt", "floatBitsToUint", "floor",
-            "fma", "fract", "frexp", "fwidth", "fwidthCoarse", "fwidthFine", "greaterThan", "greaterThanEqual",
-            "imageLoad", "imageSize", "imageStore", "imulExtended", "intBitsToFloat", "interpolateAtCentroid",
-            "interpolateAtOffset", "interpolateAtSample", "inverse", "inversesqrt", "isinf", "isnan", "ldexp", "length",
-            "lessThan", "lessThanEqual", "log", "log2", "matrixCompMult", "max", "min", "mix", "mod", "modf", "noise1",
-            "noise2", "noise3", "noise4", "normalize", "not", "notEqual", "outerProduct", "packHalf2x16", "pow",
-            "radians", "reflect", "refract", "round", "roundEven", "sign", "sin", "sinh", "smoothstep", "sqrt", "step",
-            "tan", "tanh", "texelFetch", "texture", "texture1D", "texture2D", "texture3D", "textureCube",
-            "textureGather", "textureGrad", "textureLod", "textureProj", "textureSize", "transpose", "trunc",
-            "uintBitsToFloat", "umulExtended", "unpackHalf2x16"};
-        std::sort(w.begin(), w.end());
-        return w;
-    }();
-    return all;
-}
+// clang-format off
+static constexpr std::array kWords = std::to_array<std::string_view>({
+    "active", "asm", "atomic_uint", "attribute", "bool", "break", "buffer", "bvec2", "bvec3", "bvec4", "case",
+    "cast", "centroid", "class", "coherent", "common", "const", "continue", "default", "discard", "dmat2",
+    "dmat2x2", "dmat2x3", "dmat2x4", "dmat3", "dmat3x2", "dmat3x3", "dmat3x4", "dmat4", "dmat4x2", "dmat4x3",
+    "dmat4x4", "do", "double", "dvec2", "dvec3", "dvec4", "else", "enum", "extern", "external", "false",
+    "filter", "fixed", "flat", "float", "for", "fvec2", "fvec3", "fvec4", "goto", "half", "highp", "hvec2",
+    "hvec3", "hvec4", "if", "iimage1D", "iimage2D", "iimage3D", "iimageCube", "image1D", "image2D", "image3D",
+    "imageBuffer", "imageCube", "in", "inline", "inout", "input", "int", "interface", "invariant", "isampler1D",
+    "isampler2D", "isampler3D", "isamplerBuffer", "isamplerCube", "ivec2", "ivec3", "ivec4", "layout", "long",
+    "lowp", "mat2", "mat2x2", "mat2x3", "mat2x4", "mat3", "mat3x2", "mat3x3", "mat3x4", "mat4", "mat4x2",
+    "mat4x3", "mat4x4", "mediump", "namespace", "noinline", "noperspective", "out", "output", "partition",
+    "patch", "precise", "precision", "public", "readonly", "resource", "restrict", "return", "sample",
+    "sampler1D", "sampler2D", "sampler2DArray", "sampler2DRect", "sampler2DShadow", "sampler3D",
+    "sampler3DRect", "samplerBuffer", "samplerCube", "shared", "short", "sizeof", "smooth", "static", "struct",
+    "subroutine", "superp", "switch", "template", "this", "true", "typedef", "uint", "uniform", "union",
+    "unsigned", "usampler1D", "usampler2D", "usampler3D", "using", "uvec2", "uvec3", "uvec4", "varying", "vec2",
+    "vec3", "vec4", "void", "volatile", "while", "writeonly", "main", "vd", "VertexData",
+    // built-in functions
+    "abs", "acos", "acosh", "all", "any", "asin", "asinh", "atan", "atanh", "barrier", "bitCount",
+    "bitfieldExtract", "bitfieldInsert", "bitfieldReverse", "ceil", "clamp", "cos", "cosh", "cross", "dFdx",
+    "dFdxCoarse", "dFdxFine", "dFdy", "dFdyCoarse", "dFdyFine", "degrees", "determinant", "distance", "dot",
+    "equal", "exp", "exp2", "faceforward", "findLSB", "findMSB", "floatBitsToInt", "floatBitsToUint", "floor",
+    "fma", "fract", "frexp", "fwidth", "fwidthCoarse", "fwidthFine", "greaterThan", "greaterThanEqual",
+    "imageLoad", "imageSize", "imageStore", "imulExtended", "intBitsToFloat", "interpolateAtCentroid",
+    "interpolateAtOffset", "interpolateAtSample", "inverse", "inversesqrt", "isinf", "isnan", "ldexp", "length",
+    "lessThan", "lessThanEqual", "log", "log2", "matrixCompMult", "max", "min", "mix", "mod", "modf", "noise1",
+    "noise2", "noise3", "noise4", "normalize", "not", "notEqual", "outerProduct", "packHalf2x16", "pow",
+    "radians", "reflect", "refract", "round", "roundEven", "sign", "sin", "sinh", "smoothstep", "sqrt", "step",
+    "tan", "tanh", "texelFetch", "texture", "texture1D", "texture2D", "texture3D", "textureCube",
+    "textureGather", "textureGrad", "textureLod", "textureProj", "textureSize", "transpose", "trunc",
+    "uintBitsToFloat", "umulExtended", "unpackHalf2x16"});
+// clang-format on
+static constexpr auto kSlots = text::reservedSlots(kWords);
 
-text::ReservedWords reservedWords() { return {words()}; }
+text::ReservedWords reservedWords() { return {kWords, kSlots}; }
 
 std::string_view typeName(Type type) {
     switch (type) {

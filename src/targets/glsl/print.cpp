@@ -59,15 +59,15 @@ void FunctionPrinter::entryResults() {
     for (std::size_t k = 0; k < f_.results.size(); k++) {
         std::string name = stage_.output;
         if (!stage_.isPixel) name = k == 0 ? "gl_Position" : "vd." + stage_.members.at(f_.results[k].name);
-        stage_.out.line(fmt::format("{} = {};", name, textOf(f_.results[k].value)));
+        stage_.out.line({name, " = ", textOf(f_.results[k].value), ";"});
     }
 }
 
 void FunctionPrinter::functionResults() {
     for (std::size_t k = 1; k < f_.results.size(); k++)
         if (names_[f_.results[k].value.index] != outs_[k - 1])
-            stage_.out.line(fmt::format("{} = {};", outs_[k - 1], textOf(f_.results[k].value)));
-    stage_.out.line(fmt::format("return {};", textOf(f_.results[0].value)));
+            stage_.out.line({outs_[k - 1], " = ", textOf(f_.results[k].value), ";"});
+    stage_.out.line({"return ", textOf(f_.results[0].value), ";"});
 }
 
 void FunctionPrinter::block(BlockId id) {
@@ -86,10 +86,12 @@ void FunctionPrinter::block(BlockId id) {
 
 void FunctionPrinter::let(const Stmt& s) {
     if (f_[s.expr].type == Type::Tuple) return letTuple(s);
-    std::string value = textOf(s.expr);
     std::string name = variableFor(s.expr);
-    stage_.out.line(fmt::format("{} {} = {};", typeName(f_[s.expr].type), name, value));
-    names_[s.expr.index] = name;
+    std::string& line = stage_.out.begin();
+    line.append(typeName(f_[s.expr].type)).append(" ").append(name).append(" = ");
+    write(line, s.expr);
+    stage_.out.end(";");
+    names_[s.expr.index] = std::move(name);
 }
 
 // The `out` parameter that a value becomes, where it becomes nothing else.
@@ -127,11 +129,11 @@ void FunctionPrinter::letTuple(const Stmt& s) {
     for (std::size_t k = 0; k < results.size(); k++) {
         if (results[k].empty()) results[k] = stage_.namer.local(stage_.module.names->text(callee->results[k].name));
         if (k == 0) continue;
-        if (!isOut[k]) stage_.out.line(fmt::format("{} {};", typeName(callee->results[k].type), results[k]));
+        if (!isOut[k]) stage_.out.line({typeName(callee->results[k].type), " ", results[k], ";"});
         arguments += (arguments.empty() ? "" : ", ") + results[k];
     }
-    stage_.out.line(fmt::format("{} {} = {}({});", typeName(callee->results[0].type), results[0],
-                                stage_.globals.at(callee->name), arguments));
+    stage_.out.line({typeName(callee->results[0].type), " ", results[0], " = ", stage_.globals.at(callee->name), "(",
+                     arguments, ");"});
 }
 
 void FunctionPrinter::branch(const Stmt& s) {
@@ -140,7 +142,7 @@ void FunctionPrinter::branch(const Stmt& s) {
     if (f_.body.blocks[s.body.index].empty() && f_.body.blocks[s.orElse.index].empty()) {
         for (ExprId phi : phis) {
             std::string value = textOf(phi), name = variableFor(phi);
-            stage_.out.line(fmt::format("{} {} = {};", typeName(f_[phi].type), name, value));
+            stage_.out.line({typeName(f_[phi].type), " ", name, " = ", value, ";"});
             names_[phi.index] = name;
         }
         return;
@@ -148,7 +150,7 @@ void FunctionPrinter::branch(const Stmt& s) {
     std::vector<std::string> names;
     for (ExprId phi : phis) {
         names.push_back(variableFor(phi));
-        stage_.out.line(fmt::format("{} {};", typeName(f_[phi].type), names.back()));
+        stage_.out.line({typeName(f_[phi].type), " ", names.back(), ";"});
     }
     std::string condition = textOf(s.expr);
     bool level = std::exchange(atEntryLevel_, false);
@@ -156,7 +158,7 @@ void FunctionPrinter::branch(const Stmt& s) {
     for (std::size_t side = 1; side <= 2; side++) {
         block(side == 1 ? s.body : s.orElse);
         for (std::size_t k = 0; k < phis.size(); k++)
-            stage_.out.line(fmt::format("{} = {};", names[k], textOf(f_.operand(phis[k], side))));
+            stage_.out.line({names[k], " = ", textOf(f_.operand(phis[k], side)), ";"});
         stage_.out.close();
         if (side == 1) stage_.out.open("else");
     }
@@ -193,7 +195,7 @@ void FunctionPrinter::loop(const Stmt& s) {
     std::string count = textOf(o[0], 10), index;
     nameLoopValues(s.expr, carried, names, index);
     for (std::size_t k = 0; k < carried; k++)
-        stage_.out.line(fmt::format("{} {} = {};", typeName(f_[o[1 + k]].type), names[k], first[k]));
+        stage_.out.line({typeName(f_[o[1 + k]].type), " ", names[k], " = ", first[k], ";"});
     bool level = std::exchange(atEntryLevel_, false);
     stage_.out.open(fmt::format("for (int {0} = 0; {0} < {1}; {0}++)", index, count));
     block(s.body);
@@ -227,14 +229,14 @@ void FunctionPrinter::nextValues(ExprId loop, std::size_t carried, std::size_t f
                 *std::find_if(pending.begin(), pending.end(), [&](std::size_t p) { return saved[p].empty(); });
             ExprId next = f_.operand(loop, firstNext + k);
             saved[k] = stage_.namer.local("next");
-            stage_.out.line(fmt::format("{} {} = {};", typeName(f_[next].type), saved[k], textOf(next)));
+            stage_.out.line({typeName(f_[next].type), " ", saved[k], " = ", textOf(next), ";"});
             continue;
         }
         std::size_t k = pending[chosen];
         if (saved[k].empty())
             assign(names[k], f_.operand(loop, firstNext + k), ExprId(self(k)));
         else
-            stage_.out.line(fmt::format("{} = {};", names[k], saved[k]));
+            stage_.out.line({names[k], " = ", saved[k], ";"});
         pending.erase(pending.begin() + static_cast<std::ptrdiff_t>(chosen));
     }
 }
@@ -263,17 +265,17 @@ void FunctionPrinter::assign(const std::string& target, ExprId value, ExprId sel
     if (names_[value.index].empty() && (sum || difference)) {
         auto o = f_.operandsOf(value);
         std::string_view op = operatorOf(v.op).text;
-        if (isSelf(o[0])) return stage_.out.line(fmt::format("{} {}= {};", target, op, textOf(o[1])));
-        if (sum && isSelf(o[1])) return stage_.out.line(fmt::format("{} {}= {};", target, op, textOf(o[0])));
+        if (isSelf(o[0])) return stage_.out.line({target, " ", op, "= ", textOf(o[1]), ";"});
+        if (sum && isSelf(o[1])) return stage_.out.line({target, " ", op, "= ", textOf(o[0]), ";"});
     }
-    stage_.out.line(fmt::format("{} = {};", target, textOf(value)));
+    stage_.out.line({target, " = ", textOf(value), ";"});
 }
 
 namespace {
 
 void uniformLine(Stage& stage, Type type, const std::string& name, const std::vector<std::uint32_t>& words) {
     std::string value = words.empty() ? "" : " = " + constantText(type, words.data());
-    stage.out.line(fmt::format("uniform {} {}{};", typeName(type), name, value));
+    stage.out.line({"uniform ", typeName(type), " ", name, value, ";"});
 }
 
 void uniforms(Stage& stage, const passes::StageUniforms& used) {
@@ -294,7 +296,7 @@ void vertexData(Stage& stage, std::string_view direction) {
     text::Namer members(reservedWords());  // both stages come to the same names
     for (const passes::Varying& v : stage.interface.varyings) {
         stage.members[v.name] = members.global(stage.module.names->text(v.name));
-        stage.out.line(fmt::format("{} {};", typeName(v.type), stage.members[v.name]));
+        stage.out.line({typeName(v.type), " ", stage.members[v.name], ";"});
     }
     stage.out.close("} vd;");
     stage.out.line();
@@ -307,7 +309,7 @@ void vertexStage(const Module& module, const passes::ShaderInterface& interface,
     uniforms(stage, interface.vertexUniforms);
     for (const passes::VertexInput& in : interface.inputs) {
         stage.inputs[in.name] = stage.namer.global(module.names->text(in.name));
-        stage.out.line(fmt::format("in {} {};", typeName(in.type), stage.inputs[in.name]));
+        stage.out.line({"in ", typeName(in.type), " ", stage.inputs[in.name], ";"});
     }
     stage.out.line();
     vertexData(stage, "out");
@@ -329,7 +331,7 @@ void pixelStage(const Module& module, const passes::ShaderInterface& interface, 
     vertexData(stage, "in");
     const Function& entry = *module.findOwn(interface.pixel);
     stage.output = stage.namer.global(module.names->text(entry.results[0].name));
-    stage.out.line(fmt::format("out vec4 {};", stage.output));
+    stage.out.line({"out vec4 ", stage.output, ";"});
     stage.out.line();
     for (const auto& f : module.functions) {
         if (f->name == interface.pixel || f->name == interface.vertex) continue;

@@ -89,8 +89,7 @@ void FunctionPrinter::writeLeaf(std::string& to, ExprId e) {
     switch (x.op) {
         case Op::Constant: {
             ensure(componentCount(x.type) > 0, "a constant that has no text");
-            std::string text = constantText(x.type, f_.constantWords(e).data());
-            to += text;
+            to += constantText(x.type, f_.constantWords(e).data());
             return;
         }
         case Op::Param:
@@ -105,7 +104,7 @@ void FunctionPrinter::writeLeaf(std::string& to, ExprId e) {
         case Op::Attribute: {
             Name name(x.payload);
             if (stage_.isPixel)
-                to += "vd." + stage_.members.at(name);
+                to.append("vd.").append(stage_.members.at(name));
             else
                 to += stage_.inputs.at(stage_.module.names->find(passes::inputName(stage_.module.names->text(name))));
             return;
@@ -121,7 +120,7 @@ void FunctionPrinter::writeSwizzle(std::string& to, ExprId e) {
     const Expr& x = f_[e];
     if (isMatrix(f_[of].type)) {
         write(to, of, kPostfix);
-        to += fmt::format("[{}]", x.payload);
+        to.append("[").append(std::to_string(x.payload)).append("]");
         return;
     }
     write(to, of, kPostfix);
@@ -155,9 +154,8 @@ void FunctionPrinter::writeCall(std::string& to, std::string_view function, std:
 void FunctionPrinter::writeMake(std::string& to, ExprId e) {
     Type type = f_[e].type;
     auto o = f_.operandsOf(e);
-    std::vector<ExprId> parts(o.begin(), o.end());
-    if (isMatrix(type) && o.size() == 1 && isScalar(f_[o[0]].type))
-        parts.assign(static_cast<std::size_t>(componentCount(type)), o[0]);
+    if (!isMatrix(type) || o.size() != 1 || !isScalar(f_[o[0]].type)) return writeCall(to, typeName(type), o);
+    const std::vector<ExprId> parts(static_cast<std::size_t>(componentCount(type)), o[0]);
     writeCall(to, typeName(type), parts);
 }
 
@@ -170,7 +168,7 @@ void FunctionPrinter::writeOperation(std::string& to, ExprId e, int precedence) 
     if (Operator op = operatorOf(x.op); op.precedence) {
         if (op.precedence < precedence) to += '(';
         write(to, o[0], op.precedence);
-        to += fmt::format(" {} ", op.text);
+        to.append(" ").append(op.text).append(" ");
         // Left to right: the right side of a - b or a / b keeps its brackets; sums and products need none.
         bool associative = (x.op == Op::Add && f_[o[1]].op == Op::Add) || x.op == Op::And || x.op == Op::Or;
         write(to, o[1], op.precedence + !associative);

@@ -4,8 +4,31 @@
 
 namespace shaderx::text {
 
-bool ReservedWords::contains(std::string_view word) const {
-    return std::binary_search(sorted.begin(), sorted.end(), word);
+std::size_t NameSet::slotOf(std::string_view name) const {
+    std::size_t i = hashText(name) & (slots_.size() - 1);
+    auto text = [&](std::uint32_t k) { return std::string_view(text_).substr(at_[k].first, at_[k].second); };
+    while (slots_[i] && text(slots_[i] - 1) != name) i = (i + 1) & (slots_.size() - 1);
+    return i;
+}
+
+void NameSet::insert(std::string_view name) {
+    if (at_.size() * 2 >= slots_.size()) {
+        slots_.assign(std::max<std::size_t>(64, slots_.size() * 2), 0);
+        for (std::uint32_t k = 0; k < at_.size(); k++)
+            slots_[slotOf(std::string_view(text_).substr(at_[k].first, at_[k].second))] = k + 1;
+    }
+    std::uint32_t& slot = slots_[slotOf(name)];
+    if (slot) return;
+    at_.emplace_back(static_cast<std::uint32_t>(text_.size()), static_cast<std::uint32_t>(name.size()));
+    text_ += name;
+    slot = static_cast<std::uint32_t>(at_.size());
+}
+
+void NameSet::clear() {
+    if (at_.empty()) return;
+    std::fill(slots_.begin(), slots_.end(), 0u);
+    at_.clear();
+    text_.clear();
 }
 
 std::string identifier(std::string_view text) {
@@ -23,7 +46,7 @@ std::string identifier(std::string_view text) {
 }
 
 bool Namer::taken(const std::string& name) const {
-    return reserved_.contains(name) || name.rfind("gl_", 0) == 0 || global_.count(name) || local_.count(name);
+    return reserved_.contains(name) || name.rfind("gl_", 0) == 0 || global_.contains(name) || local_.contains(name);
 }
 
 std::string Namer::fresh(std::string_view wanted) {
@@ -38,7 +61,16 @@ std::string Namer::fresh(std::string_view wanted) {
     return name;
 }
 
-std::string Namer::global(std::string_view wanted) { return *global_.insert(fresh(wanted)).first; }
-std::string Namer::local(std::string_view wanted) { return *local_.insert(fresh(wanted)).first; }
+std::string Namer::global(std::string_view wanted) {
+    std::string name = fresh(wanted);
+    global_.insert(name);
+    return name;
+}
+
+std::string Namer::local(std::string_view wanted) {
+    std::string name = fresh(wanted);
+    local_.insert(name);
+    return name;
+}
 
 }  // namespace shaderx::text

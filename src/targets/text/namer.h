@@ -1,19 +1,56 @@
 // Gives every thing in a generated text a name of its own that the language allows.
 #pragma once
 
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
+#include <utility>
 #include <vector>
+
+#include "base/names.h"
 
 namespace shaderx::text {
 
-// The words that a name must not be: keywords and built-in functions. Sorted, so that it can be searched.
+// The words that a name must not be, keywords and built-in functions: `slots` is a table of them by hash.
 struct ReservedWords {
-    std::span<const std::string_view> sorted;
-    bool contains(std::string_view word) const;
+    std::span<const std::string_view> words;
+    std::span<const std::uint16_t> slots;  // word + 1 or 0, open addressing, a power of two long
+    bool contains(std::string_view word) const {
+        const std::uint32_t mask = static_cast<std::uint32_t>(slots.size()) - 1;
+        for (std::uint32_t i = hashText(word) & mask; slots[i]; i = (i + 1) & mask)
+            if (words[slots[i] - 1u] == word) return true;
+        return false;
+    }
+};
+
+// The slots for words known when compiling.
+template <std::size_t N>
+constexpr auto reservedSlots(const std::array<std::string_view, N>& words) {
+    std::array<std::uint16_t, std::bit_ceil(4 * N)> slots{};
+    for (std::size_t k = 0; k < N; k++) {
+        std::size_t i = hashText(words[k]) & (slots.size() - 1);
+        while (slots[i]) i = (i + 1) & (slots.size() - 1);
+        slots[i] = static_cast<std::uint16_t>(k + 1);
+    }
+    return slots;
+}
+
+// Names in use.
+class NameSet {
+  public:
+    bool contains(std::string_view name) const { return !slots_.empty() && slots_[slotOf(name)] != 0; }
+    void insert(std::string_view name);
+    void clear();
+
+  private:
+    std::size_t slotOf(std::string_view name) const;
+    std::string text_;                                         // all of them, one after the other
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> at_;  // first character and length
+    std::vector<std::uint32_t> slots_;                         // name + 1 or 0
 };
 
 // Names of a whole text, and of one function at a time inside it.
@@ -36,7 +73,7 @@ class Namer {
     std::string fresh(std::string_view wanted);
 
     ReservedWords reserved_;
-    std::unordered_set<std::string> global_, local_;
+    NameSet global_, local_;
     std::unordered_map<std::string, int> next_;  // number to try next, by name
 };
 

@@ -8,7 +8,8 @@ namespace shaderx::text {
 namespace {
 
 constexpr std::array<std::string_view, 3> kWords = {"float", "mix", "out"};
-const ReservedWords kReserved{kWords};
+constexpr auto kSlots = reservedSlots(kWords);
+const ReservedWords kReserved{kWords, kSlots};
 
 TEST(Identifier, KeepsLettersDigitsAndSingleUnderscores) {
     EXPECT_EQ(identifier("base_color"), "base_color");

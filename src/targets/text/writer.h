@@ -1,6 +1,7 @@
 // Lines of text with indentation.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,15 @@ class Writer {
         if (!text.empty()) out_.append(static_cast<std::size_t>(depth_) * 4, ' ').append(text);
         out_ += '\n';
     }
+    // The same, from parts.
+    void line(std::initializer_list<std::string_view> parts) {
+        begin();
+        for (std::string_view part : parts) out_.append(part);
+        out_ += '\n';
+    }
+    // A line bit by bit: what is appended to the text that begin() returns, up to end(), is its content.
+    std::string& begin() { return out_.append(static_cast<std::size_t>(depth_) * 4, ' '); }
+    void end(std::string_view text = {}) { out_.append(text) += '\n'; }
     void open(std::string_view text) {
         line(text);
         line("{");

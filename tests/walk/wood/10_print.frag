@@ -147,8 +147,8 @@ void main()
     float wood_roughness = texture(wood_roughness_file, p).x;
     vec3 wood_relief = texture(wood_relief_file, p).xyz;
     vec3 normal = normalize(vd.normalWorld);
-    vec3 coat_turned = normalize(vd.tangentWorld);
-    vec3 wood_normal = apply_normal_map(wood_relief, NG_wood_relief, normal, coat_turned, normalize(vd.bitangentWorld));
+    vec3 coat_tangent = normalize(vd.tangentWorld);
+    vec3 wood_normal = apply_normal_map(wood_relief, NG_wood_relief, normal, coat_tangent, normalize(vd.bitangentWorld));
     float alpha = SR_lacquered_wood_coat_roughness * SR_lacquered_wood_coat_roughness;
     float coat_gamma = SR_lacquered_wood_coat_affect_color * clamp(SR_lacquered_wood_coat, 0.0, 1.0) + 1.0;
     vec3 base_color_positive = max(srgb_to_linear(texture(wood_color_file, p).xyz) * NG_wood_stain, 0.0);
