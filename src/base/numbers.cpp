@@ -4,11 +4,14 @@
 #include <cmath>
 
 #include <fast_float/fast_float.h>
-#include <fmt/format.h>
+#include <fmt/compile.h>
 
 namespace shaderx {
 
-std::string formatFloat(float value) { return fmt::format("{}", value); }
+std::string formatFloat(float value) {
+    char text[32];
+    return std::string(text, fmt::format_to(text, FMT_COMPILE("{}"), value));
+}
 
 std::string_view trim(std::string_view text) {
     std::size_t a = text.find_first_not_of(" \t\r\n");

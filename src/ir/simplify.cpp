@@ -471,7 +471,18 @@ struct Simplifier {
 
 }  // namespace
 
+// True where no rule for arithmetic looks twice at these operands, which is what most are.
+static bool isPlain(const Function& f, Op op, std::span<const ExprId> x) {
+    for (ExprId o : x) {
+        const Op of = f[o].op;
+        if (of == Op::Constant || of == Op::Make || of == Op::Neg || of == Op::Sub || of == op) return false;
+    }
+    // Equal operands, or not in order.
+    return x.size() < 2 || x[0].index < x[1].index;
+}
+
 ExprId simplify(Builder& b, Op op, Type type, std::span<const ExprId> operands, std::uint32_t payload) {
+    if (op >= Op::Neg && op <= Op::Determinant && isPlain(b.function(), op, operands)) return {};
     // The arena may grow while rules build, so the operands are copied.
     if (operands.size() <= kMaxFolded) {
         std::array<ExprId, kMaxFolded> copy;

@@ -1,8 +1,12 @@
 #include "passes/copy.h"
 
+#include <array>
+
 namespace shaderx::passes {
 
 using namespace ir;
+
+static constexpr std::size_t kFew = 4;  // operands, for which no memory is asked
 
 std::span<const ExprId> Copy::operands(ExprId e) {
     std::span<const ExprId> from = from_.operandsOf(e);
@@ -14,12 +18,17 @@ std::span<const ExprId> Copy::operands(ExprId e) {
 ExprId Copy::one(ExprId id, Type type) {
     const Expr& e = from_[id];
     std::uint32_t payload = e.payload;
+    if (e.op == Op::LoopArg) payload += loopBase_ << 8;
+    if (e.op == Op::Loop || e.op == Op::Lights) payload += loopBase_;
     ExprId made;
     if (e.op == Op::Constant && componentCount(e.type)) {
         made = to_.constant(type, from_.constantWords(id));
+    } else if (e.operandCount <= kFew) {
+        std::array<ExprId, kFew> few;
+        const ExprId* from = from_.operands.data() + e.firstOperand;
+        for (std::uint32_t k = 0; k < e.operandCount; k++) few[k] = map_[from[k].index];
+        made = to_.emit(e.op, type, std::span<const ExprId>(few.data(), e.operandCount), payload);
     } else {
-        if (e.op == Op::LoopArg) payload += loopBase_ << 8;
-        if (e.op == Op::Loop || e.op == Op::Lights) payload += loopBase_;
         made = to_.emit(e.op, type, operands(id), payload);
     }
     map_[id.index] = made;

@@ -51,28 +51,37 @@ struct Branch {
     std::vector<ExprId> phis;
 };
 
+// What is known of a value.
+struct Value {
+    std::uint32_t scope = kNone;     // where it is computed
+    std::uint32_t useScope = kNone;  // common to all uses so far
+    std::uint32_t firstUse = kNone;  // lowest user
+    std::uint32_t uses = 0;
+    std::uint32_t body = kNone;    // of loops
+    std::uint32_t branch = kNone;  // of selects
+    std::uint32_t users = 0;       // all operands that it is
+    int work = 0;                  // operations below it, up to values that are used elsewhere too
+    int length = 0;                // of its text
+    bool live = false, named = false, conditional = false;
+};
+
 struct Placer {
     Function& f;
     const PlaceOptions& options;
-    std::vector<std::uint32_t> loopOf = loopsOf(f);
-    std::vector<bool> live = reachable(f);
+    std::vector<std::uint32_t> loopOf = f.loops ? loopsOf(f) : std::vector<std::uint32_t>();
     std::size_t n = f.exprs.size();
     std::vector<Scope> scopes{{0, 0, kNoLoop}};
     std::vector<Branch> branches = {};
-    std::unordered_map<std::uint64_t, std::uint32_t> latest = {};                // branch by condition and scope
-    std::vector<std::uint32_t> scopeOf = std::vector<std::uint32_t>(n, kNone);   // where a value is computed
-    std::vector<std::uint32_t> useScope = std::vector<std::uint32_t>(n, kNone);  // common to all uses so far
-    std::vector<std::uint32_t> firstUse = std::vector<std::uint32_t>(n, kNone);  // lowest user
-    std::vector<std::uint32_t> uses = std::vector<std::uint32_t>(n, 0);
-    std::vector<std::uint32_t> bodyOf = std::vector<std::uint32_t>(n, kNone);    // of loops
-    std::vector<std::uint32_t> branchOf = std::vector<std::uint32_t>(n, kNone);  // of selects
-    std::vector<bool> named = std::vector<bool>(n, false);
+    std::unordered_map<std::uint64_t, std::uint32_t> latest = {};  // branch by condition and scope
+    std::vector<Value> values = std::vector<Value>(n);             // by expression
+    bool readsQuads = false;
 
     void run() {
-        std::vector<int> work = exclusiveWork();
+        markLive();
+        measureWork();
         for (const ResultValue& r : f.results) use(r.value, 0, static_cast<std::uint32_t>(n));
         for (std::uint32_t i = static_cast<std::uint32_t>(n); i-- > 0;)
-            if (live[i] && uses[i]) schedule(ExprId(i), work);
+            if (values[i].live && values[i].uses) schedule(ExprId(i));
         nameShared();
         nameLong();
         nameOfQuads();
@@ -81,25 +90,30 @@ struct Placer {
 
     bool isLoop(ExprId e) const { return f[e].op == Op::Loop || f[e].op == Op::Lights; }
 
-    // Operations below an expression, up to values that are used elsewhere too; a loop counts as much work.
-    std::vector<int> exclusiveWork() const {
-        std::vector<std::uint32_t> users(n, 0);
-        for (std::size_t i = 0; i < n; i++)
-            if (live[i])
-                for (ExprId o : f.operandsOf(f.exprs[i])) users[o.index]++;
-        std::vector<int> work(n, 0);
+    void markLive() {
+        for (const ResultValue& r : f.results) values[r.value.index].live = true;
+        for (std::size_t i = n; i-- > 0;)
+            if (values[i].live)
+                for (ExprId o : f.operandsOf(f.exprs[i])) {
+                    values[o.index].live = true;
+                    values[o.index].users++;
+                }
+    }
+
+    // A loop counts as much work.
+    void measureWork() {
         for (std::uint32_t i = 0; i < n; i++) {
-            if (!live[i] || isFree(f, ExprId(i))) {
+            Value& v = values[i];
+            if (!v.live || isFree(f, ExprId(i))) {
                 // The results of one loop or call are its work.
-                if (live[i] && f.exprs[i].op == Op::Result) work[i] = work[f.operand(ExprId(i), 0).index];
+                if (v.live && f.exprs[i].op == Op::Result) v.work = values[f.operand(ExprId(i), 0).index].work;
                 continue;
             }
             int sum = isLoop(ExprId(i)) ? kMuchWork : 1;
             for (ExprId o : f.operandsOf(f.exprs[i]))
-                if (users[o.index] <= 1 || f[o].op == Op::Result) sum += work[o.index];
-            work[i] = std::min(sum, 10000);
+                if (values[o.index].users <= 1 || f[o].op == Op::Result) sum += values[o.index].work;
+            v.work = std::min(sum, 10000);
         }
-        return work;
     }
 
     std::uint32_t common(std::uint32_t a, std::uint32_t b) const {
@@ -110,9 +124,9 @@ struct Placer {
     }
 
     void use(ExprId e, std::uint32_t scope, std::uint32_t user) {
-        useScope[e.index] = common(useScope[e.index], scope);
-        firstUse[e.index] = std::min(firstUse[e.index], user);
-        uses[e.index]++;
+        values[e.index].useScope = common(values[e.index].useScope, scope);
+        values[e.index].firstUse = std::min(values[e.index].firstUse, user);
+        values[e.index].uses++;
     }
 
     std::uint32_t open(std::uint32_t parent, std::uint32_t loop) {
@@ -121,17 +135,20 @@ struct Placer {
     }
 
     // The users of `e` are all placed: places it and tells its operands.
-    void schedule(ExprId e, const std::vector<int>& work) {
+    void schedule(ExprId e) {
         const Expr& x = f[e];
-        std::uint32_t i = e.index, scope = hoisted(useScope[i], loopOf[i]);
+        std::uint32_t i = e.index, scope = hoisted(values[i].useScope, loopOf.empty() ? kNoLoop : loopOf[i]);
         if (x.op == Op::Ddx || x.op == Op::Ddy) scope = 0;
-        scopeOf[i] = scope;
+        readsQuads = readsQuads || x.op == Op::Ddx || x.op == Op::Ddy || x.op == Op::TextureGrad;
+        values[i].scope = scope;
         auto operands = f.operandsOf(e);
         if (isLoop(e)) {
-            bodyOf[i] = open(scope, x.payload);
+            values[i].body = open(scope, x.payload);
             std::size_t carried = (operands.size() - (x.op == Op::Loop)) / 2, firstNext = operands.size() - carried;
-            for (std::size_t k = 0; k < operands.size(); k++) use(operands[k], k < firstNext ? scope : bodyOf[i], i);
-        } else if (x.op == Op::Select && std::max(work[operands[1].index], work[operands[2].index]) >= kMuchWork) {
+            for (std::size_t k = 0; k < operands.size(); k++)
+                use(operands[k], k < firstNext ? scope : values[i].body, i);
+        } else if (x.op == Op::Select &&
+                   std::max(values[operands[1].index].work, values[operands[2].index].work) >= kMuchWork) {
             const Branch& b = branchFor(e, scope);
             use(operands[0], scope, i);
             use(operands[1], b.then, i);
@@ -144,7 +161,7 @@ struct Placer {
     }
 
     bool readsImplicitly(ExprId e) const {
-        if (!options.isEntry || f[e].op != Op::TextureGrad || scopeOf[e.index] != 0) return false;
+        if (!options.isEntry || f[e].op != Op::TextureGrad || values[e.index].scope != 0) return false;
         auto o = f.operandsOf(e);
         return f[o[2]].op == Op::Ddx && f.operand(o[2], 0) == o[1] && f[o[3]].op == Op::Ddy &&
                f.operand(o[3], 0) == o[1];
@@ -166,32 +183,33 @@ struct Placer {
         ExprId condition = f.operand(e, 0);
         std::uint64_t key = static_cast<std::uint64_t>(condition.index) << 32 | scope;
         if (auto known = latest.find(key);
-            known != latest.end() && firstUse[e.index] > branches[known->second].position) {
+            known != latest.end() && values[e.index].firstUse > branches[known->second].position) {
             branches[known->second].phis.push_back(e);
-            branchOf[e.index] = known->second;
+            values[e.index].branch = known->second;
             return branches[known->second];
         }
         latest[key] = static_cast<std::uint32_t>(branches.size());
-        branchOf[e.index] = static_cast<std::uint32_t>(branches.size());
+        values[e.index].branch = static_cast<std::uint32_t>(branches.size());
         std::uint32_t then = open(scope, kNoLoop), otherwise = open(scope, kNoLoop);
         branches.push_back({condition, scope, e.index, then, otherwise, {e}});
         return branches.back();
     }
 
-    bool isStatement(std::uint32_t i) const { return bodyOf[i] != kNone || branchOf[i] != kNone; }
+    bool isStatement(std::uint32_t i) const { return values[i].body != kNone || values[i].branch != kNone; }
 
     // Values used more than once, or computed further out than where they are used.
     void nameShared() {
         for (std::uint32_t i = 0; i < n; i++) {
-            if (!live[i] || !uses[i] || isStatement(i)) continue;
+            if (!values[i].live || !values[i].uses || isStatement(i)) continue;
             bool several = f.exprs[i].type == Type::Tuple;
-            named[i] = several || (!isFree(f, ExprId(i)) && !isView(i) && (uses[i] > 1 || scopeOf[i] != useScope[i]));
+            values[i].named = several || (!isFree(f, ExprId(i)) && !isView(i) &&
+                                          (values[i].uses > 1 || values[i].scope != values[i].useScope));
         }
         // What a loop counts to is asked every turn.
         for (std::uint32_t i = 0; i < n; i++)
-            if (bodyOf[i] != kNone && f.exprs[i].op == Op::Loop)
+            if (values[i].body != kNone && f.exprs[i].op == Op::Loop)
                 if (ExprId count = f.operand(ExprId(i), 0); !isFree(f, count) && !isStatement(count.index))
-                    named[count.index] = true;
+                    values[count.index].named = true;
     }
 
     // Characters in the text of a value that costs nothing to name again, roughly.
@@ -219,20 +237,20 @@ struct Placer {
         Op op = f.exprs[i].op;
         if (op != Op::Neg && op != Op::Swizzle && op != Op::Retype) return false;
         std::uint32_t of = f.operand(ExprId(i), 0).index;
-        return named[of] || isStatement(of);
+        return values[of].named || isStatement(of);
     }
 
     // Splits long expressions: names the longest part, one with a name of its own before others.
     void nameLong() {
-        std::vector<int> length(n, 0);
         constexpr int kName = 8, kOperation = 4;
         auto lengthOf = [&](ExprId o) {
-            return named[o.index] || isStatement(o.index) ? nameLength(f.hints[o.index], kName) : length[o.index];
+            return values[o.index].named || isStatement(o.index) ? nameLength(f.hints[o.index], kName)
+                                                                 : values[o.index].length;
         };
         for (std::uint32_t i = 0; i < n; i++) {
-            if (!live[i] || !uses[i]) continue;
+            if (!values[i].live || !values[i].uses) continue;
             if (isFree(f, ExprId(i))) {
-                length[i] = freeLength(f.exprs[i]);
+                values[i].length = freeLength(f.exprs[i]);
                 continue;
             }
             if (isStatement(i)) continue;  // its operands stand in lines of their own
@@ -247,16 +265,17 @@ struct Placer {
                 for (ExprId o : operands) {
                     int l = lengthOf(o);
                     sum += l;
-                    if (named[o.index] || isStatement(o.index) || isFree(f, o) || f[o].type == Type::Tuple) continue;
+                    if (values[o.index].named || isStatement(o.index) || isFree(f, o) || f[o].type == Type::Tuple)
+                        continue;
                     int s = l + (f.hints[o.index] ? 2 * kName : 0);
                     if (s > score) {
                         score = s;
                         longest = o;
                     }
                 }
-                length[i] = sum;
+                values[i].length = sum;
                 if (sum <= options.longestText || !longest) break;
-                named[longest.index] = true;
+                values[longest.index].named = true;
             }
         }
     }
@@ -264,17 +283,18 @@ struct Placer {
     // What needs the neighbouring pixels must not stand where only some pixels come by: on one side of a select that is
     // an expression, after an `and` or `or`, in the bound of a loop.
     void nameOfQuads() {
-        std::vector<bool> conditional(n, false);
+        if (!readsQuads) return;
         for (std::uint32_t i = static_cast<std::uint32_t>(n); i-- > 0;) {
-            if (!live[i] || !uses[i]) continue;
+            if (!values[i].live || !values[i].uses) continue;
             Op op = f.exprs[i].op;
-            if (conditional[i] && (op == Op::Ddx || op == Op::Ddy || readsImplicitly(ExprId(i)))) named[i] = true;
-            bool inherits = conditional[i] && !named[i] && !isStatement(i);
+            if (values[i].conditional && (op == Op::Ddx || op == Op::Ddy || readsImplicitly(ExprId(i))))
+                values[i].named = true;
+            bool inherits = values[i].conditional && !values[i].named && !isStatement(i);
             auto operands = f.operandsOf(f.exprs[i]);
             for (std::size_t k = 0; k < operands.size(); k++) {
-                bool side = (op == Op::Select && branchOf[i] == kNone && k > 0) ||
+                bool side = (op == Op::Select && values[i].branch == kNone && k > 0) ||
                             ((op == Op::And || op == Op::Or) && k == 1) || (op == Op::Loop && k == 0);
-                if (side || inherits) conditional[operands[k].index] = true;
+                if (side || inherits) values[operands[k].index].conditional = true;
             }
         }
     }
@@ -285,10 +305,10 @@ struct Placer {
         body.blocks.resize(scopes.size());
         std::vector<std::pair<std::uint32_t, Stmt>> all;  // with the position
         for (std::uint32_t i = 0; i < n; i++) {
-            if (!live[i] || !uses[i]) continue;
-            if (bodyOf[i] != kNone)
-                all.push_back({i, {StmtKind::Loop, ExprId(i), BlockId(bodyOf[i]), {}, 0, 0}});
-            else if (named[i])
+            if (!values[i].live || !values[i].uses) continue;
+            if (values[i].body != kNone)
+                all.push_back({i, {StmtKind::Loop, ExprId(i), BlockId(values[i].body), {}, 0, 0}});
+            else if (values[i].named)
                 all.push_back({i, {StmtKind::Let, ExprId(i), {}, {}, 0, 0}});
         }
         for (Branch& b : branches) {
@@ -304,7 +324,7 @@ struct Placer {
         }
         std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
         for (auto& [position, s] : all) {
-            std::uint32_t scope = s.kind == StmtKind::If ? scopes[s.body.index].parent : scopeOf[s.expr.index];
+            std::uint32_t scope = s.kind == StmtKind::If ? scopes[s.body.index].parent : values[s.expr.index].scope;
             body.blocks[scope].push_back(s);
         }
     }

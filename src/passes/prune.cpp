@@ -12,11 +12,11 @@ using namespace ir;
 
 namespace {
 
-// What is needed of a function.
+// What is needed of a function: truths.
 struct Use {
-    std::vector<bool> results, params;
-    std::vector<bool> live;  // expressions
-    bool isChanged = false;
+    std::vector<char> results, params;
+    std::vector<char> live;   // expressions
+    bool isNarrowed = false;  // results or parameters go
 };
 
 struct Pruner {
@@ -24,6 +24,7 @@ struct Pruner {
     std::unordered_map<Name, Use> uses{};
     std::vector<Function*> order{};  // callees first
     std::unordered_map<Name, Name> alias{};
+    std::vector<ExprId> instead{};  // of results of calls that have one left: the call
 
     // Callees first, each once; the call graph has no cycles.
     void sort(Name entry) {
@@ -60,9 +61,13 @@ struct Pruner {
             if (!use.live[i]) continue;
             const Expr& e = f.exprs[i];
             auto operands = f.operandsOf(e);
-            bool selective = !first && e.op == Op::Call;
-            for (std::size_t k = 0; k < operands.size(); k++)
-                if (!selective || uses[Name(e.payload)].params[k]) use.live[operands[k].index] = true;
+            if (e.op == Op::Call && !first) {
+                const std::vector<char>& read = uses[Name(e.payload)].params;
+                for (std::size_t k = 0; k < operands.size(); k++)
+                    if (read[k]) use.live[operands[k].index] = true;
+                continue;
+            }
+            for (ExprId o : operands) use.live[o.index] = true;
             if (e.op == Op::Param) use.params[e.payload] = true;
             if (first && e.op == Op::Call && e.type != Type::Tuple) uses[Name(e.payload)].results[0] = true;
             if (first && e.op == Op::Result) {
@@ -74,17 +79,18 @@ struct Pruner {
 
     // Forgets results that only dead expressions read, now that parameters nobody reads are known; true if there are
     // any.
-    bool narrow(std::span<const Name> entries) {
-        std::unordered_map<Name, std::vector<bool>> read;
+    bool forget(std::span<const Name> entries) {
+        std::unordered_map<Name, std::vector<char>> read;
         for (Function* f : order) read[f->name].assign(f->results.size(), false);
         for (Name e : entries) read[e] = uses[e].results;
         for (std::size_t i = order.size(); i-- > 0;) {
             const Function& f = *order[i];
-            const std::vector<bool>& needed = read[f.name];
+            const std::vector<char>& needed = read[f.name];
             if (std::find(needed.begin(), needed.end(), true) == needed.end()) continue;
+            const std::vector<char>& live = uses[f.name].live;
             for (std::size_t k = 0; k < f.exprs.size(); k++) {
                 const Expr& e = f.exprs[k];
-                if (!uses[f.name].live[k]) continue;
+                if (!live[k]) continue;
                 if (e.op == Op::Call && e.type != Type::Tuple) read[Name(e.payload)][0] = true;
                 if (e.op == Op::Result && f[f.operandsOf(e)[0]].op == Op::Call)
                     read[Name(f[f.operandsOf(e)[0]].payload)][e.payload] = true;
@@ -98,48 +104,111 @@ struct Pruner {
         return less;
     }
 
-    // Whether anything of the function goes, or of those that it calls.
+    // Whether anything of the function goes, or of the interface of those that it calls.
     bool isChanged(const Function& f, bool isEntry) {
-        const Use& use = uses[f.name];
-        auto any = [](const std::vector<bool>& v) { return std::find(v.begin(), v.end(), false) != v.end(); };
-        if (any(use.live) || any(use.results) || (!isEntry && any(use.params))) return true;
+        Use& use = uses[f.name];
+        use.isNarrowed = hasFalse(use.results) || (!isEntry && hasFalse(use.params));
+        if (use.isNarrowed || hasFalse(use.live)) return true;
         for (const Expr& e : f.exprs)
-            if (e.op == Op::Call && (uses[Name(e.payload)].isChanged || alias.count(Name(e.payload)))) return true;
+            if (e.op == Op::Call && (uses[Name(e.payload)].isNarrowed || alias.count(Name(e.payload)))) return true;
+        return false;
+    }
+    static bool hasFalse(const std::vector<char>& v) { return std::find(v.begin(), v.end(), false) != v.end(); }
+
+    // Takes what goes out of a function, in place: what is left is as simple as it was.
+    void narrow(Function& f, bool isEntry) {
+        if (!isChanged(f, isEntry)) return;
+        const Use& use = uses[f.name];
+        std::vector<std::uint32_t> param(f.params.size());
+        std::uint32_t params = 0;
+        for (std::size_t i = 0; i < f.params.size(); i++) {
+            if (!isEntry && !use.params[i]) continue;
+            param[i] = params;
+            f.params[params++] = f.params[i];
+        }
+        f.params.resize(params);
+        std::size_t results = 0;
+        for (std::size_t i = 0; i < f.results.size(); i++)
+            if (use.results[i]) f.results[results++] = f.results[i];
+        f.results.resize(results);
+        instead.assign(f.exprs.size(), ExprId());
+        for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
+            Expr& e = f.exprs[i];
+            if (!use.live[i]) continue;
+            for (std::uint32_t k = e.firstOperand; k < e.firstOperand + e.operandCount; k++)
+                if (ExprId other = instead[f.operands[k].index]) f.operands[k] = other;
+            if (e.op == Op::Param)
+                e.payload = param[e.payload];
+            else if (e.op == Op::Call)
+                call(f, e);
+            else if (e.op == Op::Result && f[f.operand(ExprId(i), 0)].op == Op::Call)
+                result(f, ExprId(i));
+        }
+        for (ResultValue& r : f.results)
+            if (instead[r.value.index]) r.value = instead[r.value.index];
+        for (Expr& e : f.exprs)
+            if (auto merged = alias.find(Name(e.payload)); e.op == Op::Call && merged != alias.end())
+                e.payload = merged->second.index;
+        compact(f);
+        if (callsTwice(f)) unify(f);
+    }
+
+    // The callee is narrowed already, so its results and parameters are those that are left.
+    void call(Function& f, Expr& e) {
+        const Name name(e.payload);
+        const Use& use = uses[name];
+        const Function& callee = *module.findOwn(name);
+        std::uint16_t kept = 0;
+        for (std::uint32_t k = 0; k < e.operandCount; k++)
+            if (use.params[k]) f.operands[e.firstOperand + kept++] = f.operands[e.firstOperand + k];
+        e.operandCount = kept;
+        e.type = callee.results.size() == 1 ? callee.results[0].type : Type::Tuple;
+    }
+
+    void result(Function& f, ExprId id) {
+        const ExprId of = f.operand(id, 0);
+        Expr& e = f.exprs[id.index];
+        if (f[of].type != Type::Tuple) {
+            instead[id.index] = of;
+            if (!f.hints[of.index]) f.hints[of.index] = f.hints[id.index];
+            return;
+        }
+        const Use& use = uses[Name(f[of].payload)];
+        std::uint32_t k = 0;
+        for (std::uint32_t i = 0; i < e.payload; i++) k += use.results[i];
+        e.payload = k;
+    }
+
+    static bool sameOperands(const Function& f, const Expr& a, const Expr& b) {
+        auto x = f.operandsOf(a), y = f.operandsOf(b);
+        return std::equal(x.begin(), x.end(), y.begin(), y.end());
+    }
+
+    // Calls that differed in what went may be one now.
+    static bool callsTwice(const Function& f) {
+        std::vector<ExprId> calls;
+        for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
+            const Expr& e = f.exprs[i];
+            if (e.op != Op::Call) continue;
+            for (ExprId c : calls)
+                if (f[c].payload == e.payload && sameOperands(f, f[c], e)) return true;
+            calls.push_back(ExprId(i));
+        }
         return false;
     }
 
-    void rebuild(Function& f, bool isEntry) {
-        Use& use = uses[f.name];
-        if (!isChanged(f, isEntry)) return;
-        use.isChanged = true;
+    void unify(Function& f) {
         Function fresh;
         fresh.name = f.name;
+        fresh.params = f.params;
         fresh.comment = f.comment;
         fresh.isInline = f.isInline;
-        std::vector<std::uint32_t> param(f.params.size());
-        for (std::size_t i = 0; i < f.params.size(); i++)
-            if (isEntry || use.params[i]) {
-                param[i] = static_cast<std::uint32_t>(fresh.params.size());
-                fresh.params.push_back(f.params[i]);
-            }
         Builder b(module, fresh);
         b.reserve(f.exprs.size());
         Copy copy(f, b);
-        for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
-            if (!use.live[i]) continue;
-            ExprId id(i);
-            const Expr& e = f.exprs[i];
-            if (e.op == Op::Param)
-                copy.set(id, b.param(param[e.payload]));
-            else if (e.op == Op::Call)
-                call(b, f, id, copy);
-            else if (e.op == Op::Result && f[f.operand(id, 0)].op == Op::Call)
-                result(b, f, id, copy);
-            else
-                copy.one(id);
-        }
-        for (std::size_t i = 0; i < f.results.size(); i++)
-            if (use.results[i]) b.addResult(f.results[i].name, copy[f.results[i].value]);
+        for (std::uint32_t i = 0; i < f.exprs.size(); i++) copy.one(ExprId(i));
+        for (const ResultValue& r : f.results) b.addResult(r.name, copy[r.value]);
+        compact(fresh);
         f = std::move(fresh);
     }
 
@@ -168,31 +237,6 @@ struct Pruner {
         return a.operands == b.operands && a.words == b.words &&
                std::equal(a.exprs.begin(), a.exprs.end(), b.exprs.begin(), b.exprs.end(), sameExpr);
     }
-
-    // The callee is rebuilt already, so its results and parameters are those that are left.
-    void call(Builder& b, const Function& f, ExprId id, Copy& copy) {
-        Name name(f[id].payload);
-        const Use& use = uses[name];
-        const Function& callee = *module.findOwn(name);
-        std::vector<ExprId> arguments;
-        std::span<const ExprId> all = f.operandsOf(id);
-        for (std::size_t i = 0; i < all.size(); i++)
-            if (use.params[i]) arguments.push_back(copy[all[i]]);
-        Type type = callee.results.size() == 1 ? callee.results[0].type : Type::Tuple;
-        auto merged = alias.find(name);
-        copy.set(id, b.call(merged == alias.end() ? name : merged->second, type, arguments));
-        if (f.hints[id.index]) b.hint(copy[id], f.hints[id.index]);
-    }
-
-    void result(Builder& b, const Function& f, ExprId id, Copy& copy) {
-        ExprId made = copy[f.operand(id, 0)];
-        const Use& use = uses[Name(f[f.operand(id, 0)].payload)];
-        std::uint32_t k = 0;
-        for (std::uint32_t i = 0; i < f[id].payload; i++) k += use.results[i];
-        if (b.type(made) == Type::Tuple) made = b.result(made, k, f[id].type);
-        copy.set(id, made);
-        if (f.hints[id.index]) b.hint(made, f.hints[id.index]);
-    }
 };
 
 }  // namespace
@@ -204,7 +248,7 @@ void prune(Module& module, std::span<const Name> entries) {
     for (std::size_t i = p.order.size(); i-- > 0;) p.mark(*p.order[i], true);
     do
         for (Function* f : p.order) p.mark(*f, false);
-    while (p.narrow(entries));
+    while (p.forget(entries));
     auto isEntry = [&](Name n) {
         for (Name e : entries)
             if (e == n) return true;
@@ -212,9 +256,9 @@ void prune(Module& module, std::span<const Name> entries) {
     };
     std::vector<Name> names;
     for (Function* f : p.order) {
-        const std::vector<bool>& used = p.uses[f->name].results;
+        const std::vector<char>& used = p.uses[f->name].results;
         if (std::find(used.begin(), used.end(), true) == used.end()) continue;  // only dead calls led to it
-        p.rebuild(*f, isEntry(f->name));
+        p.narrow(*f, isEntry(f->name));
         if (isEntry(f->name) || !p.mergedWithEarlier(*f, names)) names.push_back(f->name);
     }
     module.keepOnly(names);

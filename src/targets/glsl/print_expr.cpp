@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -22,10 +23,10 @@ static std::string number(Scalar scalar, std::uint32_t word) {
             // The lowest integer has no literal of its own.
             return word == 0x80000000u ? "(-2147483647 - 1)" : std::to_string(static_cast<int>(word));
         case Scalar::Float: {
-            std::string s = formatFloat(std::bit_cast<float>(word));
-            if (s == "inf") return "uintBitsToFloat(0x7f800000u)";
-            if (s == "-inf") return "uintBitsToFloat(0xff800000u)";
-            if (s.find("nan") != std::string::npos) return "uintBitsToFloat(0x7fc00000u)";
+            const float value = std::bit_cast<float>(word);
+            if (std::isnan(value)) return "uintBitsToFloat(0x7fc00000u)";
+            if (std::isinf(value)) return value > 0 ? "uintBitsToFloat(0x7f800000u)" : "uintBitsToFloat(0xff800000u)";
+            std::string s = formatFloat(value);
             if (s.find_first_of(".e") == std::string::npos) s += ".0";
             return s;
         }

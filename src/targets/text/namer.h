@@ -15,13 +15,13 @@
 
 namespace shaderx::text {
 
-// The words that a name must not be, keywords and built-in functions: `slots` is a table of them by hash.
+// The words that a name must not be, keywords and built-in functions: `slots` is a table of them by hashText.
 struct ReservedWords {
     std::span<const std::string_view> words;
     std::span<const std::uint16_t> slots;  // word + 1 or 0, open addressing, a power of two long
-    bool contains(std::string_view word) const {
+    bool contains(std::string_view word, std::uint32_t hash) const {
         const std::uint32_t mask = static_cast<std::uint32_t>(slots.size()) - 1;
-        for (std::uint32_t i = hashText(word) & mask; slots[i]; i = (i + 1) & mask)
+        for (std::uint32_t i = hash & mask; slots[i]; i = (i + 1) & mask)
             if (words[slots[i] - 1u] == word) return true;
         return false;
     }
@@ -39,15 +39,18 @@ constexpr auto reservedSlots(const std::array<std::string_view, N>& words) {
     return slots;
 }
 
-// Names in use.
+// Names in use; hashes are those of hashText.
 class NameSet {
   public:
-    bool contains(std::string_view name) const { return !slots_.empty() && slots_[slotOf(name)] != 0; }
-    void insert(std::string_view name);
+    bool contains(std::string_view name, std::uint32_t hash) const {
+        return !slots_.empty() && slots_[slotOf(name, hash)] != 0;
+    }
+    void insert(std::string_view name, std::uint32_t hash);
     void clear();
 
   private:
-    std::size_t slotOf(std::string_view name) const;
+    std::size_t slotOf(std::string_view name, std::uint32_t hash) const;
+    std::string_view text(std::size_t k) const { return std::string_view(text_).substr(at_[k].first, at_[k].second); }
     std::string text_;                                         // all of them, one after the other
     std::vector<std::pair<std::uint32_t, std::uint32_t>> at_;  // first character and length
     std::vector<std::uint32_t> slots_;                         // name + 1 or 0
@@ -69,8 +72,8 @@ class Namer {
     std::string local(std::string_view wanted);
 
   private:
-    bool taken(const std::string& name) const;
-    std::string fresh(std::string_view wanted);
+    bool taken(std::string_view name, std::uint32_t hash) const;
+    std::string fresh(std::string_view wanted, NameSet& set);
 
     ReservedWords reserved_;
     NameSet global_, local_;

@@ -9,6 +9,7 @@ namespace shaderx::text {
 
 class Writer {
   public:
+    Writer() { out_.reserve(kUsual); }
     // A whole line at the present depth; an empty one stays empty.
     void line(std::string_view text = {}) {
         if (!text.empty()) out_.append(static_cast<std::size_t>(depth_) * 4, ' ').append(text);
@@ -40,6 +41,8 @@ class Writer {
     int depth() const { return depth_; }
 
   private:
+    static constexpr std::size_t kUsual = 8192;  // characters of a shader
+
     std::string out_;
     int depth_ = 0;
 };
