@@ -20,6 +20,8 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
 
     Name functionOf(doc::NodeDef def, Diagnostics& diagnostics) override;
     bool takeName(Name name) override { return uniformNames_.insert(name).second; }
+    // Before another program.
+    void forgetNames() { uniformNames_.clear(); }
     doc::NodeDef colorTransform(std::string_view from, std::string_view to, ir::Type type) override;
     doc::ElementRef geometricProperty(Name name) override;
     doc::NodeDef nodeFor(std::string_view category, ir::Type type) override;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <unordered_set>
 
 #include <fmt/format.h>
@@ -120,6 +121,7 @@ struct Compilation {
     NameTable& names;
     const doc::Definitions& definitions;
     NodeBodies& bodies;
+    passes::Specialisations& made;
     ir::Module module;
     graph::Graph graph{};
     passes::ShaderInterface interface{};
@@ -214,10 +216,10 @@ struct Compilation {
     }
 
     bool specialise() {
-        bool ok = passes::specialise(module, pixel, {}, diagnostics);
+        bool ok = passes::specialise(module, pixel, {}, made, diagnostics);
         if (ok && options.interface == Interface::Live) {
             std::unordered_set<Name> baked = passes::topologyUniforms(module, *module.findOwn(pixel));
-            ok = baked.empty() || passes::specialise(module, pixel, baked, diagnostics);
+            ok = baked.empty() || passes::specialise(module, pixel, baked, made, diagnostics);
         }
         if (!ok) return false;
         passes::prune(module, std::array{pixel});
@@ -230,7 +232,7 @@ struct Compilation {
         bool isShader = ir::isClosure(graph.outputs[0].type);
         Name output = names.intern(isShader || port == "out" || port.empty() ? "out1" : port);
         if (!passes::shade(module, pixel, output, diagnostics)) return false;
-        if (!passes::specialise(module, pixel, {}, diagnostics)) return false;
+        if (!passes::specialise(module, pixel, {}, made, diagnostics)) return false;
         passes::prune(module, std::array{pixel});
         dump(StageName::Shade);
         return true;
@@ -270,21 +272,43 @@ struct Compilation {
 
 }  // namespace
 
+void Compiler::generate(const doc::Document& document, std::span<const doc::ElementId> elements,
+                        const GenerateOptions& options, const Done& done) {
+    std::optional<doc::Definitions> definitions;
+    std::optional<NodeBodies> bodies;
+    passes::Specialisations made;
+    for (doc::ElementId element : elements) {
+        Shader shader;
+        Diagnostics diagnostics;
+        bool ok = guarded(diagnostics, fmt::format("generating '{}'", document.path(element)), [&] {
+            if (!definitions) definitions = state_->definitions(document);
+            // Uniforms inside of bodies have taken names that another element may want.
+            if (bodies && !bodies->made().uniforms.empty()) {
+                bodies.reset();
+                made.clear();
+            }
+            if (!bodies) bodies.emplace(state_->names, *definitions, state_->libraries()).addDocument(document);
+            bodies->forgetNames();
+            Compilation c{document,    element,       options,
+                          diagnostics, state_->names, *definitions,
+                          *bodies,     made,          ir::Module(state_->names)};
+            c.module.sources.push_back(&*bodies);
+            for (Library* l : state_->libraries()) c.module.sources.push_back(l);
+            return c.run(shader);
+        });
+        done(element, ok ? Result<Shader>(std::move(shader)) : Failure{}, diagnostics);
+    }
+}
+
 Result<Shader> Compiler::generate(const doc::Document& document, doc::ElementId element, const GenerateOptions& options,
                                   Diagnostics& diagnostics) {
-    Shader shader;
-    bool ok = guarded(diagnostics, fmt::format("generating '{}'", document.path(element)), [&] {
-        doc::Definitions definitions = state_->definitions(document);
-        NodeBodies bodies(state_->names, definitions, state_->libraries());
-        bodies.addDocument(document);
-        Compilation c{document,      element,     options, diagnostics,
-                      state_->names, definitions, bodies,  ir::Module(state_->names)};
-        c.module.sources.push_back(&bodies);
-        for (Library* l : state_->libraries()) c.module.sources.push_back(l);
-        return c.run(shader);
-    });
-    if (!ok) return Failure{};
-    return shader;
+    Result<Shader> made = Failure{};
+    generate(document, std::span(&element, 1), options,
+             [&](doc::ElementId, Result<Shader> shader, const Diagnostics& found) {
+                 for (const Diagnostic& d : found.all()) diagnostics.add(d.severity, d.code, d.message) = d;
+                 made = std::move(shader);
+             });
+    return made;
 }
 
 std::vector<std::uint8_t> packLibrary(std::vector<LibraryFile> files, Diagnostics& diagnostics) {

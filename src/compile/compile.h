@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -104,6 +105,11 @@ class Compiler {
     // else in the document do not matter.
     Result<Shader> generate(const doc::Document& document, doc::ElementId element, const GenerateOptions& options,
                             Diagnostics& diagnostics);
+    // The same for several elements of one document, one after the other: each goes to `done` with what was found. What
+    // they have in common is made once; the shaders are those that they would be alone.
+    using Done = std::function<void(doc::ElementId element, Result<Shader> shader, const Diagnostics& diagnostics)>;
+    void generate(const doc::Document& document, std::span<const doc::ElementId> elements,
+                  const GenerateOptions& options, const Done& done);
 
   private:
     struct State;

@@ -153,6 +153,36 @@ TEST(Compile, TheSameBytesEveryTimeInAnyOrderByAnyCompiler) {
         }
 }
 
+// What elements compiled together have in common is made once, and shows nowhere.
+TEST(Compile, TogetherElementsAreWhatTheyAreAlone) {
+    std::size_t several = 0;
+    for (const fs::path& file : samples())
+        for (Interface interface : {Interface::Live, Interface::Baked}) {
+            Compiler compiler(builtinLibrary());
+            auto document = readSample(compiler, file);
+            ASSERT_TRUE(document);
+            for (bool reversed : {false, true}) {
+                std::vector<ElementId> elements = compiler.renderableElements(*document);
+                if (reversed) std::reverse(elements.begin(), elements.end());
+                several += elements.size() > 1;
+                GenerateOptions how;
+                how.interface = interface;
+                std::vector<std::string> all;
+                compiler.generate(*document, elements, how,
+                                  [&](ElementId e, Result<Shader> shader, const Diagnostics& diagnostics) {
+                                      EXPECT_TRUE(e == elements[all.size()]);
+                                      EXPECT_TRUE(shader) << diagnostics.text();
+                                      all.push_back(shader ? bytesOf(*shader) : "none");
+                                  });
+                if (reversed) std::reverse(all.begin(), all.end());
+                std::string out;
+                for (const std::string& one : all) out += one;
+                EXPECT_EQ(out, bytesOf(compiler, *document, interface)) << file;
+            }
+        }
+    EXPECT_GT(several, 0u);
+}
+
 TEST(Compile, LibraryFromTextsGivesTheBytesOfTheBuiltInOne) {
     std::vector<LibraryFile> files;
     for (const auto& entry : fs::directory_iterator(fs::path(SHADERX_SOURCE_DIR) / "nodes"))

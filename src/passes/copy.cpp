@@ -36,4 +36,13 @@ ExprId Copy::one(ExprId id, Type type) {
     return made;
 }
 
+ExprId Copy::plain(ExprId id, Type type) {
+    const Expr& e = from_[id];
+    if (e.op == Op::Constant || e.op == Op::LoopArg || e.op == Op::Loop || e.op == Op::Lights) return one(id, type);
+    ExprId made = to_.emitRaw(e.op, type, operands(id), e.payload);
+    map_[id.index] = made;
+    if (from_.hints[id.index]) to_.hint(made, from_.hints[id.index]);
+    return made;
+}
+
 }  // namespace shaderx::passes

@@ -22,6 +22,8 @@ class Copy {
     ir::ExprId one(ir::ExprId e) { return one(e, from_[e].type); }
     // The same as another type of as many components.
     ir::ExprId one(ir::ExprId e, ir::Type type);
+    // The same, of operands that no rule makes simpler.
+    ir::ExprId plain(ir::ExprId e, ir::Type type);
 
   private:
     const ir::Function& from_;

@@ -33,9 +33,8 @@ struct Argument {
     }
 };
 
-// Of which function a clone is, and for which arguments: one word for the name, for each argument one for its shape and
-// type and then the words that it has.
-using Key = std::vector<std::uint32_t>;
+// One word for the function's name, for each argument one for its shape and type and then the words that it has.
+using Key = Specialisations::Key;
 
 void addArgument(Key& key, const Argument& a) {
     key.push_back(static_cast<std::uint32_t>(a.shape) << 16 | static_cast<std::uint32_t>(a.type));
@@ -58,14 +57,6 @@ void eachArgument(const Key& key, F&& visit) {
     }
 }
 
-struct KeyHash {
-    std::size_t operator()(const Key& key) const noexcept {
-        std::uint64_t h = key.size();
-        for (std::uint32_t w : key) h = (h ^ w) * 0x9e3779b97f4a7c15ull;
-        return h ^ h >> 32;
-    }
-};
-
 // The results of a call of several: how many expressions there were before it, and where its results are.
 struct Tuple {
     std::uint32_t call, before;
@@ -79,6 +70,8 @@ struct Frame {
 };
 
 struct Specialiser;
+using Clone = Specialisations::Clone;
+using Clones = Specialisations;
 
 // Which expressions of a function its results need, for given arguments: of a choice whose condition is known, only the
 // side that is taken, so that nothing is made of the other.
@@ -151,15 +144,11 @@ struct Specialiser {
     Module& module;
     const std::unordered_set<Name>& baked;
     Diagnostics& diagnostics;
-    bool isPartial = false;  // only expands; what is known of arguments is asked later
-    // Small clones are expanded where they are called and so have no name; the others are the module's.
-    struct Clone {
-        Function small;
-        Function* named = nullptr;
-        const Function& function() const { return named ? *named : small; }
-    };
-    std::unordered_map<Key, Clone, KeyHash> clones{};
-    std::unordered_map<Name, const Key*> known{};  // clones made here: nothing is left to specialise in them
+    bool isPartial;                                // only expands; what is known of arguments is asked later
+    Clones& shared;                                // of functions of libraries
+    Clones own{};                                  // of functions of the module, which are what a pass has left of them
+    std::unordered_map<Name, Name> placed{};       // the module's copies of clones
+    std::unordered_map<Name, const Key*> known{};  // of these: nothing is left to specialise in them
     std::deque<Frame> frames{};                    // by depth
     std::size_t depth = 0;
     bool ok = true;
@@ -172,10 +161,40 @@ struct Specialiser {
         fresh.params = old->params;
         fresh.comment = old->comment;
         rebuild(*old, fresh);
-        module.put(std::move(fresh));
-        while (ok && share(entry)) {
-        }
+        place(module.put(std::move(fresh)));
+        if (ok) share(entry);
+        if (!ok) shared.clear();  // what was made after an error is not what it should be
         return ok;
+    }
+
+    // The clone of a name, none if the name is no clone's.
+    const Clone* cloneOf(Name name) const {
+        const Clone* found = own.find(name);
+        return found ? found : shared.find(name);
+    }
+
+    // Gives the module a copy of every clone that a function of it calls.
+    void place(Function& caller) {
+        for (Expr& e : caller.exprs)
+            if (e.op == Op::Call)
+                if (const Clone* c = cloneOf(Name(e.payload))) e.payload = placeOne(*c).index;
+    }
+
+    Name placeOne(const Clone& clone) {
+        Name& name = placed[clone.function.name];
+        if (name) return name;
+        std::string_view stem = module.names->text(clone.function.name);
+        stem = stem.substr(0, stem.find('@'));
+        int number = 0;
+        Name fresh;
+        do fresh = module.names->intern(fmt::format("{}@{}", stem, number++));
+        while (module.findOwn(fresh));
+        name = fresh;
+        known[fresh] = clone.key;
+        Function copy = clone.function;
+        copy.name = fresh;
+        place(module.put(std::move(copy)));
+        return fresh;
     }
 
     // Fills a function that has the parameters of another one with the other's results.
@@ -266,7 +285,8 @@ struct Specialiser {
         Frame& frame = frames[depth];
         frame.arguments.assign(operands.begin(), operands.end());
         frame.results.clear();
-        const Function* callee = module.find(Name(e.payload));
+        const Clone* made = cloneOf(Name(e.payload));  // nothing is left to specialise in it
+        const Function* callee = made ? &made->function : module.find(Name(e.payload));
         if (!callee || depth >= kMaxDepth || !ok) {  // after an error the rest is not worth the work
             refuse(b, e, callee, frame.results);
             return frame.results;
@@ -277,7 +297,7 @@ struct Specialiser {
         } else if (isPartial) {
             keepCall(b, e, *callee, frame);
         } else {
-            const Function& clone = known.count(callee->name) ? *callee : cloneFor(b, *callee, frame);
+            const Function& clone = made ? *callee : cloneFor(b, *callee, frame);
             if (isSmall(clone))
                 expand(clone, b, frame.arguments, frame.results);
             else
@@ -351,23 +371,25 @@ struct Specialiser {
                 frame.arguments[kept++] = a.shape == Shape::Filled ? filler(b.function(), e) : e;
         }
         frame.arguments.resize(kept);
-        return clone(callee, frame).function();
+        return clone(callee, frame).function;
     }
 
     // The clone of the frame's key, which is made if it is new.
     const Clone& clone(const Function& callee, Frame& frame) {
-        auto [found, isNew] = clones.try_emplace(frame.key);
-        if (!isNew) return found->second;
+        Clones& all = module.findOwn(callee.name) ? own : shared;
+        auto [found, isNew] = all.byKey.try_emplace(frame.key);
         Clone& made = found->second;
-        make(callee, found->first, frame, made.small);
-        if (isSmall(made.small)) return made;
+        if (!isNew) return made;
+        made.key = &found->first;
+        make(callee, found->first, frame, made.function);
+        if (isSmall(made.function)) return made;  // is expanded where it is called and needs no name
         std::string_view stem = module.names->text(callee.name);
         stem = stem.substr(0, stem.find('@'));
-        int number = 0;
-        do made.small.name = module.names->intern(fmt::format("{}@{}", stem, number++));
-        while (module.findOwn(made.small.name));
-        made.named = &module.put(std::move(made.small));
-        known[made.named->name] = &found->first;
+        Name name;
+        do name = module.names->intern(fmt::format("{}@@{}", stem, all.next++));
+        while (cloneOf(name));
+        made.function.name = name;
+        all.byName[name] = &made;
         return made;
     }
 
@@ -399,27 +421,62 @@ struct Specialiser {
         return componentCount(a.type) ? b.constant(a.type, a.words) : b.emit(Op::Constant, a.type, {}, a.words[0]);
     }
 
+    // What sharing asks of a function.
+    struct Summary {
+        std::vector<Name> calls;  // of each call, the callee
+        std::size_t work = 0;     // operations of its own, a call being one
+    };
+    std::unordered_map<Name, Summary> summaries{};
+    std::unordered_map<Name, Name> instead{};  // of clones, those that serve for them
+
+    const Summary& summaryOf(Name name) {
+        auto [found, isNew] = summaries.try_emplace(name);
+        Summary& s = found->second;
+        if (!isNew) return s;
+        for (const Expr& e : module.findOwn(name)->exprs) {
+            s.work += isWork(e.op);
+            if (e.op == Op::Call) s.calls.push_back(Name(e.payload));
+        }
+        return s;
+    }
+
+    Name resolved(Name name) const {
+        for (auto found = instead.find(name); found != instead.end(); found = instead.find(name)) name = found->second;
+        return name;
+    }
+
     // Clones of one function that do the same work on different numbers become one that takes the numbers: less text
-    // for the same speed. True if two did; then others may.
-    bool share(Name entry) {
+    // for the same speed.
+    void share(Name entry) {
         std::vector<Name> live = liveClones(entry);
+        if (live.size() < 2) return;
+        while (sharesTwo(live)) live = liveClones(entry);
+        if (instead.empty()) return;
+        live.push_back(entry);
+        for (Name n : live) redirect(*module.findOwn(n));
+    }
+
+    // True if two of them did; then others may.
+    bool sharesTwo(const std::vector<Name>& live) {
         for (std::size_t i = 0; i < live.size(); i++)
             for (std::size_t j = i + 1; j < live.size(); j++)
-                if (mergedBoth(entry, live[i], live[j])) return true;
+                if (mergedBoth(live[i], live[j])) return true;
         return false;
     }
 
-    bool mergedBoth(Name entry, Name x, Name y) {
+    bool mergedBoth(Name x, Name y) {
         if (frames.empty()) frames.emplace_back();
         if (!haveCommon(*known[x], *known[y], frames[0].key)) return false;
         const Function* callee = module.find(Name(frames[0].key[0]));
         depth = 1;
-        const Function* merged = clone(*callee, frames[0]).named;
+        const Clone& common = clone(*callee, frames[0]);
         depth = 0;
-        std::size_t apart = std::min(workOf(x), workOf(y));
-        if (!merged || workOf(merged->name) > apart + apart / 8 + 2) return false;
-        redirect(entry, x, merged->name);
-        redirect(entry, y, merged->name);
+        if (!common.function.name) return false;
+        const Name merged = placeOne(common);
+        const std::size_t apart = std::min(workOf(x), workOf(y));
+        if (workOf(merged) > apart + apart / 8 + 2) return false;
+        if (x != merged) instead[x] = merged;
+        if (y != merged) instead[y] = merged;
         return true;
     }
 
@@ -427,12 +484,20 @@ struct Specialiser {
     std::vector<Name> liveClones(Name entry) {
         std::vector<Name> order{entry}, found;
         for (std::size_t i = 0; i < order.size(); i++)
-            for (const Expr& e : module.findOwn(order[i])->exprs)
-                if (e.op == Op::Call && std::find(order.begin(), order.end(), Name(e.payload)) == order.end())
-                    order.push_back(Name(e.payload));
+            for (Name callee : summaryOf(order[i]).calls)
+                if (callee = resolved(callee); std::find(order.begin(), order.end(), callee) == order.end())
+                    order.push_back(callee);
         for (Name n : order)
             if (known.count(n)) found.push_back(n);
         return found;
+    }
+
+    // Operations of a function with all that it calls.
+    std::size_t workOf(Name name) {
+        const Summary& s = summaryOf(name);
+        std::size_t work = s.work;
+        for (Name callee : s.calls) work += workOf(resolved(callee));
+        return work;
     }
 
     // The arguments under which one clone serves both: what differs in numbers is taken as a parameter.
@@ -446,58 +511,73 @@ struct Specialiser {
             if (a.isSame(other[i])) return addArgument(common, a);
             // A truth, count or text decides too much. A vector of one number stays one: what is known of it in a
             // function must hold in those that it calls.
-            can = can && info(a.type).scalar == Scalar::Float && shared(a) == shared(other[i]);
-            addArgument(common, {shared(a), a.type, {}});
+            can = can && info(a.type).scalar == Scalar::Float && widerShape(a) == widerShape(other[i]);
+            addArgument(common, {widerShape(a), a.type, {}});
         });
         return can;
     }
 
     // How a constant is taken when it becomes a parameter: a vector that repeats one number, as that number.
-    static Shape shared(const Argument& a) {
+    static Shape widerShape(const Argument& a) {
         if (a.shape != Shape::Constant || !isVector(a.type)) return a.shape == Shape::Constant ? Shape::Any : a.shape;
         return std::equal(a.words.begin() + 1, a.words.end(), a.words.begin()) ? Shape::Filled : Shape::Any;
     }
 
-    // Operations of a function with all that it calls.
-    std::size_t workOf(Name name) const {
-        std::size_t work = 0;
-        for (const Expr& e : module.findOwn(name)->exprs)
-            if (isWork(e.op)) work += 1 + (e.op == Op::Call ? workOf(Name(e.payload)) : 0);
-        return work;
-    }
+    // A function being copied as it is, but for some calls.
+    struct Redirected {
+        std::vector<Expr> exprs{};
+        std::vector<ExprId> operands{};
+        std::vector<Name> hints{};
+        std::vector<std::uint32_t> words{};
 
-    // Makes every call of `from` one of `to`, which takes more arguments.
-    void redirect(Name entry, Name from, Name to) {
-        std::vector<Name> callers = liveClones(entry);
-        callers.push_back(entry);
-        for (Name name : callers) {
-            Function* f = module.findOwn(name);
-            auto calls = [&](const Expr& e) { return e.op == Op::Call && Name(e.payload) == from; };
-            if (std::none_of(f->exprs.begin(), f->exprs.end(), calls)) continue;
-            Function fresh;
-            fresh.name = f->name;
-            fresh.params = f->params;
-            fresh.comment = f->comment;
-            Builder b(module, fresh);
-            b.reserve(f->exprs.size());
-            Copy copy(*f, b);
-            for (std::uint32_t i = 0; i < f->exprs.size(); i++) {
-                const Expr& e = f->exprs[i];
-                if (!calls(e)) {
-                    copy.one(ExprId(i));
-                    continue;
-                }
-                copy.set(ExprId(i), b.call(to, e.type, widened(b, copy.operands(ExprId(i)), *known[from], *known[to])));
-                if (f->hints[i]) b.hint(copy[ExprId(i)], f->hints[i]);
-            }
-            for (const ResultValue& r : f->results) b.addResult(r.name, copy[r.value]);
-            compact(fresh);
-            *f = std::move(fresh);
+        ExprId append(Expr e, std::span<const ExprId> o, Name hint) {
+            e.operandCount = static_cast<std::uint16_t>(o.size());
+            e.firstOperand = static_cast<std::uint32_t>(operands.size());
+            operands.insert(operands.end(), o.begin(), o.end());
+            exprs.push_back(e);
+            hints.push_back(hint);
+            return ExprId(static_cast<std::uint32_t>(exprs.size() - 1));
         }
+        ExprId constant(Type type, std::span<const std::uint32_t> bits, Name hint = {}) {
+            Expr e{Op::Constant, 0, 0, type, 0, 0, bits[0]};
+            if (componentCount(type)) {
+                e.payload = static_cast<std::uint32_t>(words.size());
+                words.insert(words.end(), bits.begin(), bits.end());
+            }
+            return append(e, {}, hint);
+        }
+    };
+
+    // Makes calls of clones that others serve for calls of these, which take more arguments.
+    void redirect(Function& f) {
+        auto isOther = [&](const Expr& e) { return e.op == Op::Call && instead.count(Name(e.payload)); };
+        if (std::none_of(f.exprs.begin(), f.exprs.end(), isOther)) return;
+        Redirected r;
+        std::vector<ExprId> at(f.exprs.size()), arguments;
+        for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
+            Expr e = f.exprs[i];
+            arguments.clear();
+            for (ExprId o : f.operandsOf(e)) arguments.push_back(at[o.index]);
+            if (e.op == Op::Constant && componentCount(e.type)) {
+                at[i] = r.constant(e.type, f.constantWords(ExprId(i)), f.hints[i]);
+                continue;
+            }
+            if (isOther(e)) {
+                const Name to = resolved(Name(e.payload));
+                arguments = widened(r, arguments, *known[Name(e.payload)], *known[to]);
+                e.payload = to.index;
+            }
+            at[i] = r.append(e, arguments, f.hints[i]);
+        }
+        for (ResultValue& v : f.results) v.value = at[v.value.index];
+        f.exprs = std::move(r.exprs);
+        f.operands = std::move(r.operands);
+        f.hints = std::move(r.hints);
+        f.words = std::move(r.words);
     }
 
     // The arguments of a call of the clone `from` as those of the clone `to`, which knows less of some.
-    static std::vector<ExprId> widened(Builder& b, std::span<const ExprId> old, const Key& from, const Key& to) {
+    static std::vector<ExprId> widened(Redirected& r, std::span<const ExprId> old, const Key& from, const Key& to) {
         std::vector<Argument> wanted;
         eachArgument(to, [&](std::uint32_t, const Argument& a) { wanted.push_back(a); });
         std::vector<ExprId> arguments;
@@ -507,11 +587,11 @@ struct Specialiser {
             Shape shape = wanted[i].shape;
             if (shape == Shape::Constant) return;
             if (given && a.shape == Shape::Filled && shape == Shape::Any)
-                given = b.make(a.type, {given});
+                given = r.append({Op::Make, 0, 0, a.type, 0, 0, 0}, std::span(&given, 1), {});
             else if (!given && shape == Shape::Filled)
-                given = b.constant(Type::Float, a.words.first(1));
+                given = r.constant(Type::Float, a.words.first(1));
             else if (!given)
-                given = constant(b, a);
+                given = r.constant(a.type, a.words);
             arguments.push_back(given);
         });
         return arguments;
@@ -571,15 +651,21 @@ bool Demand::make(ExprId id, int depth) {
 
 }  // namespace
 
+bool specialise(Module& module, Name entry, const std::unordered_set<Name>& baked, Specialisations& made,
+                Diagnostics& diagnostics) {
+    return Specialiser{module, baked, diagnostics, false, made}.run(entry);
+}
+
 bool specialise(Module& module, Name entry, const std::unordered_set<Name>& baked, Diagnostics& diagnostics) {
-    return Specialiser{module, baked, diagnostics}.run(entry);
+    Specialisations made;
+    return specialise(module, entry, baked, made, diagnostics);
 }
 
 void flatten(Module& module, Function& function) {
     Diagnostics ignored;  // a call of what is missing stays
     const std::unordered_set<Name> none;
-    Specialiser s{module, none, ignored};
-    s.isPartial = true;
+    Specialisations made;
+    Specialiser s{module, none, ignored, true, made};
     Function fresh;
     fresh.name = function.name;
     fresh.params = function.params;

@@ -1,12 +1,45 @@
 // Specialisation: what is constant folds, what cannot contribute goes, functions are cloned on constant arguments.
 #pragma once
 
+#include <unordered_map>
 #include <unordered_set>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "ir/module.h"
 
 namespace shaderx::passes {
+
+// Specialised functions of libraries, kept for the next material: those of one document have much in common. Names in
+// them are of one table, functions are found in the same libraries. What is made with them has the same bytes as what
+// is made without.
+struct Specialisations {
+    // Of which function a clone is, and for which arguments.
+    using Key = std::vector<std::uint32_t>;
+    struct KeyHash {
+        std::size_t operator()(const Key& key) const noexcept {
+            std::uint64_t h = key.size();
+            for (std::uint32_t w : key) h = (h ^ w) * 0x9e3779b97f4a7c15ull;
+            return h ^ h >> 32;
+        }
+    };
+    struct Clone {
+        ir::Function function;  // without a name if it is small enough to be expanded
+        const Key* key = nullptr;
+    };
+    std::unordered_map<Key, Clone, KeyHash> byKey;
+    std::unordered_map<Name, const Clone*> byName;
+    int next = 0;
+
+    const Clone* find(Name name) const {
+        auto found = byName.find(name);
+        return found == byName.end() ? nullptr : found->second;
+    }
+    void clear() {
+        byName.clear();
+        byKey.clear();
+    }
+};
 
 // Rebuilds the module's function `entry` and, as clones of their own, all functions that it calls:
 // - small functions, those marked inline and those with derivatives or closures expand where they are called;
@@ -17,6 +50,8 @@ namespace shaderx::passes {
 // - `known` becomes true where its operand is, else false.
 // Afterwards every function that the entry reaches belongs to the module. A function that is missing, or a nest of
 // calls too deep, is an error.
+bool specialise(ir::Module& module, Name entry, const std::unordered_set<Name>& baked, Specialisations& made,
+                Diagnostics& diagnostics);
 bool specialise(ir::Module& module, Name entry, const std::unordered_set<Name>& baked, Diagnostics& diagnostics);
 
 // Expands in a function of a library what specialise would expand whatever the arguments are: done once, when the

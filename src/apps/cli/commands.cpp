@@ -100,15 +100,24 @@ struct Session {
         return found;
     }
 
-    Result<Shader> shaderOf(const std::string& file, const doc::Document& document, doc::ElementId element) {
-        Diagnostics diagnostics;
+    GenerateOptions how() {
         GenerateOptions how;
         how.interface =
             options.interface == "baked" || options.interface == "reduced" ? Interface::Baked : Interface::Live;
         how.dumps = &dumps;
-        Result<Shader> shader = compiler.generate(document, element, how, diagnostics);
+        return how;
+    }
+
+    void reportElement(const std::string& file, const doc::Document& document, doc::ElementId element,
+                       const Diagnostics& diagnostics) {
         report(diagnostics,
                "generate " + file + " --interface " + options.interface + " --element " + document.path(element));
+    }
+
+    Result<Shader> shaderOf(const std::string& file, const doc::Document& document, doc::ElementId element) {
+        Diagnostics diagnostics;
+        Result<Shader> shader = compiler.generate(document, element, how(), diagnostics);
+        reportElement(file, document, element, diagnostics);
         return shader;
     }
 
@@ -128,12 +137,12 @@ struct Session {
     }
 };
 
-// An element to compile, and the name of its files.
+// What to compile of a document, and the names of its files.
 struct Work {
     const std::string& file;
-    const doc::Document* document;
-    doc::ElementId element;
-    std::string stem;
+    std::unique_ptr<doc::Document> document;
+    std::vector<doc::ElementId> elements = {};
+    std::vector<std::string> stems = {};
 };
 
 }  // namespace
@@ -147,29 +156,41 @@ int generate(const Options& options) {
         if (!makeFolder(options.out, diagnostics) && !s.report(diagnostics)) return kInputErrors;
     }
     // Two elements of one file name are an error for both, so all names are known before anything is written.
-    std::vector<std::unique_ptr<doc::Document>> documents;
     std::vector<Work> work;
     std::map<std::string, int> names;
     for (const std::string& file : options.files) {
-        documents.push_back(s.read(file));
-        if (!documents.back()) continue;
-        for (doc::ElementId e : s.elements(file, *documents.back())) {
-            std::string stem = stemOf(file) + "." + fileNameOf(documents.back()->path(e));
-            names[stem]++;
-            work.push_back({file, documents.back().get(), e, std::move(stem)});
+        Work w{file, s.read(file)};
+        if (!w.document) continue;
+        w.elements = s.elements(file, *w.document);
+        for (doc::ElementId e : w.elements) {
+            w.stems.push_back(stemOf(file) + "." + fileNameOf(w.document->path(e)));
+            names[w.stems.back()]++;
         }
+        work.push_back(std::move(w));
     }
-    for (const Work& w : work) {
-        if (writes && options.out != "-" && names[w.stem] > 1) {
-            Diagnostics diagnostics;
-            Diagnostic& e =
-                diagnostics.error("file-name-clash", "another element would be written to '" + w.stem + "' too");
-            e.where = w.document->locate(w.element);
-            e.path = w.document->path(w.element);
-            s.report(diagnostics);
-        } else if (Result<Shader> shader = s.shaderOf(w.file, *w.document, w.element); shader && writes) {
-            s.write(w.stem, *shader);
+    for (Work& w : work) {
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < w.elements.size(); i++) {
+            if (writes && options.out != "-" && names[w.stems[i]] > 1) {
+                Diagnostics diagnostics;
+                Diagnostic& e = diagnostics.error("file-name-clash",
+                                                  "another element would be written to '" + w.stems[i] + "' too");
+                e.where = w.document->locate(w.elements[i]);
+                e.path = w.document->path(w.elements[i]);
+                s.report(diagnostics);
+                continue;
+            }
+            w.elements[left] = w.elements[i];
+            std::swap(w.stems[left++], w.stems[i]);
         }
+        w.elements.resize(left);
+        std::size_t next = 0;
+        s.compiler.generate(*w.document, w.elements, s.how(),
+                            [&](doc::ElementId e, Result<Shader> shader, const Diagnostics& diagnostics) {
+                                s.reportElement(w.file, *w.document, e, diagnostics);
+                                if (shader && writes) s.write(w.stems[next], *shader);
+                                next++;
+                            });
     }
     return s.exitCode();
 }

@@ -107,7 +107,9 @@ struct Legaliser {
         } else if (e.op == Op::LessEqual && b.type(o[0]) == Type::Boolean) {
             made = b.op(Op::Or, {b.op(Op::Not, {o[0]}), o[1]});
         } else {
-            copy.one(id, type);
+            // A role that went may have stood between a vector and its parts.
+            const bool isComposed = e.op >= Op::Make && e.op <= Op::Index;
+            isComposed ? copy.one(id, type) : copy.plain(id, type);
             return;
         }
         copy.set(id, made);

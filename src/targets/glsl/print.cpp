@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "base/diagnostics.h"
 #include "targets/glsl/glsl.h"
 #include "targets/glsl/names.h"
@@ -44,13 +42,17 @@ void FunctionPrinter::print() {
 
 std::string FunctionPrinter::signature() {
     if (isEntry_) return "void main()";
-    std::string text = fmt::format("{} {}(", typeName(f_.results[0].type), stage_.globals.at(f_.name));
-    for (std::size_t i = 0; i < params_.size(); i++)
-        text += fmt::format("{}{} {}", i ? ", " : "", typeName(f_.params[i].type), params_[i]);
+    std::string text(typeName(f_.results[0].type));
+    text.append(" ").append(stage_.globals.at(f_.name)).append("(");
+    std::string_view between;
+    auto parameter = [&](std::string_view kind, Type type, const std::string& name) {
+        text.append(between).append(kind).append(typeName(type)).append(" ").append(name);
+        between = ", ";
+    };
+    for (std::size_t i = 0; i < params_.size(); i++) parameter("", f_.params[i].type, params_[i]);
     for (std::size_t k = 1; k < f_.results.size(); k++) {
         outs_.push_back(stage_.namer.local(stage_.module.names->text(f_.results[k].name)));
-        text += fmt::format("{}out {} {}", params_.empty() && k == 1 ? "" : ", ", typeName(f_.results[k].type),
-                            outs_.back());
+        parameter("out ", f_.results[k].type, outs_.back());
     }
     return text + ")";
 }
@@ -154,7 +156,7 @@ void FunctionPrinter::branch(const Stmt& s) {
     }
     std::string condition = textOf(s.expr);
     bool level = std::exchange(atEntryLevel_, false);
-    stage_.out.open(fmt::format("if ({})", condition));
+    stage_.out.open("if (" + condition + ")");
     for (std::size_t side = 1; side <= 2; side++) {
         block(side == 1 ? s.body : s.orElse);
         for (std::size_t k = 0; k < phis.size(); k++)
@@ -197,7 +199,7 @@ void FunctionPrinter::loop(const Stmt& s) {
     for (std::size_t k = 0; k < carried; k++)
         stage_.out.line({typeName(f_[o[1 + k]].type), " ", names[k], " = ", first[k], ";"});
     bool level = std::exchange(atEntryLevel_, false);
-    stage_.out.open(fmt::format("for (int {0} = 0; {0} < {1}; {0}++)", index, count));
+    stage_.out.open("for (int " + index + " = 0; " + index + " < " + count + "; " + index + "++)");
     block(s.body);
     nextValues(s.expr, carried, 1 + carried, names);
     stage_.out.close();
@@ -292,7 +294,7 @@ void uniforms(Stage& stage, const passes::StageUniforms& used) {
 
 void vertexData(Stage& stage, std::string_view direction) {
     if (stage.interface.varyings.empty()) return;
-    stage.out.open(fmt::format("{} VertexData", direction));
+    stage.out.open(std::string(direction) + " VertexData");
     text::Namer members(reservedWords());  // both stages come to the same names
     for (const passes::Varying& v : stage.interface.varyings) {
         stage.members[v.name] = members.global(stage.module.names->text(v.name));
