@@ -242,6 +242,24 @@ TEST(Lower, GeometricPropertiesAreComputedOnce) {
     EXPECT_EQ(lost.codes(), "unknown-geomprop ");
 }
 
+TEST(Lower, AGeometricPropertyTakesNoValue) {
+    Sample s(
+        R"(<facing name="f" type="float"><input name="normal" type="vector3" value="0, 0, 1"/><input name="scale" type="float" value="2"/></facing>)");
+    std::string text = s.program("f");
+    EXPECT_EQ(count(text, "call vector3 ND_normal"), 1u) << text;
+    EXPECT_EQ(s.codes(), "ignored-value ");
+    EXPECT_FALSE(s.diagnostics.hasErrors());
+    EXPECT_EQ(s.uniforms(), "f_scale=f/scale ");
+
+    // What is connected is read, also where it ends in a value of a nodegraph.
+    Sample port(R"(<nodegraph name="g"><input name="up" type="vector3" value="0, 0, 1"/>
+        <facing name="f" type="float"><input name="normal" type="vector3" interfacename="up"/></facing>
+        <output name="out" type="float" nodename="f"/></nodegraph>)");
+    text = port.program("g");
+    EXPECT_EQ(count(text, "call vector3 ND_normal"), 0u) << text;
+    EXPECT_EQ(port.codes(), "");
+}
+
 TEST(Lower, ValuesInAnotherColourSpaceAreTransformed) {
     Sample s(
         R"(<add name="a" type="color3"><input name="in1" type="color3" value="0.5, 0.5, 0.5" colorspace="srgb_texture"/>

@@ -123,11 +123,26 @@ struct Lowerer {
             case Source::Kind::Interface:
                 return parameter(s.input);
             case Source::Kind::Value:
+                if (input && isGeometric(s, *input, *owner)) return defaultOf(*input, *owner);
                 return written(s.element, type, input, owner);
             case Source::Kind::Default:
                 return input ? defaultOf(*input, *owner) : ExprId();
         }
         return {};
+    }
+
+    // An input that stands for a geometric property is that property unless it is connected. Documents write what is no
+    // place or direction of a mesh there, such as 0 or a normal in tangent space, and are drawn by others without it.
+    bool isGeometric(const Source& s, const Input& input, const Node& owner) {
+        Name property = definitions.element(owner.def, *input.port).attribute(d.known().defaultgeomprop);
+        if (!property || d[s.element].parent != owner.element) return false;
+        Diagnostic& w = diagnostics.warning(
+            "ignored-value",
+            fmt::format("the value of '{}' is not read: unless connected, it is the geometric property {}",
+                        d.text(d[s.element].name), d.text(property)));
+        w.where = d.locate(s.element, d.known().value);
+        w.path = d.path(s.element);
+        return true;
     }
 
     // Where the document connects an input.

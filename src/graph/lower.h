@@ -41,7 +41,7 @@ struct LowerOptions {
 // expanded wherever it is called. Values become constants or uniforms named <node>_<input>, those of a nodegraph's
 // interface <nodegraph>_<input>; texture files always become uniforms, without any file being touched. Colours and
 // textures given in another colour space are transformed. Unconnected inputs take their nodedef's default value or
-// geometric property. Values keep the names of their nodes.
+// geometric property; a value in place of a geometric property is a warning. Values keep the names of their nodes.
 bool lower(const Graph& graph, const doc::Definitions& definitions, Bodies& bodies, doc::NodeDef implemented, Name name,
            const LowerOptions& options, ir::Module& module, Diagnostics& diagnostics);
 
