@@ -22,7 +22,9 @@ void dielectric_bsdf_environment(color tint, float ior, vector2 roughness, boole
 {
     radiance = color(0.0);
     albedo = color(0.0);
-    if (scatter_mode == "R" || scatter_mode == "RT")
+    // An index of 1 is no interface, as that of a base below a coat of the same stuff.
+    boolean nothing = known(ior == 1.0 && thinfilm_thickness == 0.0);
+    if (!nothing && (scatter_mode == "R" || scatter_mode == "RT"))
     {
         color base = color(0.0);
         color rise = color(0.0);

@@ -1,5 +1,7 @@
-// sheen_bsdf: the fibres of cloth, as a microfacet lobe along the horizon. Distribution of Conty and Kulla 2017, eq.
-// 2; visibility of Neubelt and Pettineo 2013. Both modes of the node use this lobe.
+// sheen_bsdf: the fibres of cloth.
+
+// Mode "conty_kulla": a microfacet lobe along the horizon. Distribution of Conty and Kulla 2017, eq. 2; visibility of
+// Neubelt and Pettineo 2013.
 
 float sheen_width(float roughness)
 {
@@ -40,39 +42,99 @@ float sheen_light(float roughness, vector N, vector V, vector L)
     return sheen_lobe(roughness, NV, NL, NH) / max(sheen_excess(roughness, NV), 1.0);
 }
 
-float sheen_albedo(float roughness, vector N, vector V)
+// Mode "zeltner": a layer of upright fibres in which light scatters any number of times (Zeltner, Burley and Chiang 2022,
+// Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines, eq. 1). What comes to a view at cosine NV is
+// a cosine lobe, stretched and sheared: in the frame (x, y, N) whose x is V laid down, L belongs to the direction
+// (A L.x + B L.z, A L.y, L.z) of the cosine. A, B and the albedo are fitted by tools/fit to the table published with it.
+float fibre_albedo(float roughness, float NV)
 {
-    return clamp(sheen_fit(roughness, clamp(dot(N, V), 0.0001, 1.0)), 0.0, 1.0);
+    float r = sheen_width(roughness);
+    float up = 0.0111547 + r * (-0.123956 + r * (0.802235 - 0.409352 * r)) +
+               NV * (0.198854 + r * (0.669584 + 0.0790869 * r) + NV * (1.36266 - 1.34894 * r));
+    return exp(-up / (r * (0.0353364 + r + NV * (0.102131 + 0.00039855 * r))));
+}
+
+// A and B.
+vector2 fibre_transform(float roughness, float NV)
+{
+    float r = sheen_width(roughness);
+    float scale = (0.491028 - NV * (5.39946 + 1.21236 * NV) + r * (-4.0881 + 47.9716 * NV + 10.8696 * r)) /
+                  (1.0 + 24.3968 * NV + r * (8.99022 + 19.9769 * NV));
+    float shear = (r * (-0.568242 + r * (-6.26041 - 12.0802 * r)) + NV * (r * (48.1897 - 78.9398 * r) - 21.5877 * NV)) /
+                  (1.0 + 131.265 * NV * NV + 30.8189 * r * r);
+    // The table has less only where there is next to no light.
+    return vector2(max(scale, 0.02 + 0.3 * NV), (1.0 - r) * sqrt(1.0 - NV) * shear);
+}
+
+// The frame of the view.
+void fibre_frame(vector N, vector V, output vector x, output vector y)
+{
+    microfacet_frame(vector2(1.0), N, V, V, x, y);
+}
+
+// Density over solid angle of the lobe, which is the density of the cosine times what the transform does to a solid
+// angle. It holds the cosine of the light, as reflectance does not, so the lobe is not the same for V and L exchanged.
+float fibre_density(float roughness, vector N, vector V, vector L)
+{
+    vector x = vector(0.0);
+    vector y = vector(0.0);
+    fibre_frame(N, V, x, y);
+    vector2 t = fibre_transform(roughness, clamp(dot(N, V), 0.0001, 1.0));
+    float NL = max(dot(N, L), 0.0);
+    vector d = vector(t.x * dot(L, x) + t.y * NL, t.x * dot(L, y), NL);
+    float square = dot(d, d);
+    return 0.318309886 * t.x * t.x * NL / max(square * square, 0.00000001);
+}
+
+// Both modes.
+
+float sheen_albedo(float roughness, string mode, vector N, vector V)
+{
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    return mode == "zeltner" ? fibre_albedo(roughness, NV) : clamp(sheen_fit(roughness, NV), 0.0, 1.0);
 }
 
 void sheen_bsdf_environment(color color, float roughness, string mode, vector N, vector V, output color radiance,
                             output color albedo)
 {
-    float share = sheen_albedo(roughness, N, V);
+    float share = sheen_albedo(roughness, mode, N, V);
     radiance = color * share * irradiance(N);
     albedo = share;
 }
 
 color sheen_bsdf_eval(color color, float roughness, string mode, vector N, vector V, vector L)
 {
+    if (mode == "zeltner")
+        return color * fibre_albedo(roughness, clamp(dot(N, V), 0.0001, 1.0)) * fibre_density(roughness, N, V, L);
     return color * sheen_light(roughness, N, V, L);
 }
 
-void sheen_bsdf_sample(vector N, vector V, vector2 u, output vector L)
+void sheen_bsdf_sample(float roughness, string mode, vector N, vector V, vector2 u, output vector L)
 {
     L = cosine_sample(N, u);
+    if (mode == "zeltner")
+    {
+        vector x = vector(0.0);
+        vector y = vector(0.0);
+        fibre_frame(N, V, x, y);
+        vector2 t = fibre_transform(roughness, clamp(dot(N, V), 0.0001, 1.0));
+        float NL = dot(N, L);
+        L = normalize((dot(L, x) - t.y * NL) * x + dot(L, y) * y + t.x * NL * N);
+    }
 }
 
-float sheen_bsdf_pdf(vector N, vector V, vector L)
+float sheen_bsdf_pdf(float roughness, string mode, vector N, vector V, vector L)
 {
-    return cosine_pdf(N, L);
+    return mode == "zeltner" ? fibre_density(roughness, N, V, L) : cosine_pdf(N, L);
 }
 
-// The integral of sheen_light over L, off by less than 0.001 where roughness is 0.05 and more: halves of circles of
-// light of one height, which are denser along the surface.
+// In mode "conty_kulla" the integral of sheen_light over L, off by less than 0.001 where roughness is 0.05 and more:
+// halves of circles of light of one height, which are denser along the surface.
 color sheen_bsdf_albedo(color color, float roughness, string mode, vector N, vector V)
 {
     float NV = clamp(dot(N, V), 0.0001, 1.0);
+    if (mode == "zeltner")
+        return color * fibre_albedo(roughness, NV);
     float across = sqrt(max(1.0 - NV * NV, 0.0));
     float sum = 0.0;
     for (int i = 0; i < 32; i++)

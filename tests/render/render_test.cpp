@@ -93,8 +93,9 @@ TEST_F(Render, NothingIsBrighterThanAWhiteSurrounding) {
     Diagnostics diagnostics;
     ASSERT_TRUE(image::writePfm(white, even, diagnostics)) << diagnostics.text();
     // All but those that give off light of their own.
-    for (const char* name : {"default_surface.mtlx", "plastic.mtlx", "gold.mtlx", "car_paint.mtlx", "glass.mtlx",
-                             "velvet.mtlx", "leaf.mtlx", "skin.mtlx", "soap_film.mtlx", "ghost.mtlx"})
+    for (const char* name :
+         {"default_surface.mtlx", "plastic.mtlx", "gold.mtlx", "car_paint.mtlx", "glass.mtlx", "velvet.mtlx",
+          "leaf.mtlx", "skin.mtlx", "soap_film.mtlx", "ghost.mtlx", "gltf.mtlx", "disney.mtlx"})
         for (int samples : {4, 64}) {
             Summary s = summarise(render(name, white, samples));
             EXPECT_LE(s.largest, 1.001f) << name << " with " << samples << " samples";

@@ -1,6 +1,9 @@
 // Fits the directional albedos that nodes/microfacet.sl and nodes/bsdf_*.sl use: quadrature, then a small rational
 // or polynomial form by least squares. Prints each form's coefficients with its largest and RMS error over the grid.
 //   c++ -O2 -std=c++20 tools/fit/fit.cpp -o fit && ./fit        (standard library only; half a minute)
+//   ./fit ltc_table_sheen_volume.cpp
+// The second form fits the sheen of Zeltner, Burley and Chiang 2022 instead, from the table that they publish with
+// their paper (github.com/tizian/ltc-sheen, fitting/python/data).
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -294,6 +297,46 @@ void fitEnergy() {
     std::printf("; at least %.4f\n", least);
 }
 
+// The linearly transformed cosine of Zeltner et al., A, B and R of 32 cosines in each of 32 lines of a roughness: as
+// the table holds them, for cosines and roughness from 0 to 1. Errors count as much as the light that they move.
+bool fitSheenVolume(const char* path) {
+    std::FILE* file = std::fopen(path, "r");
+    if (!file) return false;
+    std::vector<double> numbers;
+    for (int c = std::fgetc(file); c != EOF; c = std::fgetc(file)) {
+        double abr[3];
+        if (c == 'f' && std::fscanf(file, "(%lf, %lf, %lf)", abr, abr + 1, abr + 2) == 3)
+            numbers.insert(numbers.end(), abr, abr + 3);
+    }
+    std::fclose(file);
+    if (numbers.size() != 3 * 32 * 32) return false;
+    std::vector<Point> scale, shear, reflected;
+    for (int i = 0; i < 32; i++)
+        for (int j = 0; j < 32; j++) {
+            const double* abr = &numbers[3 * (32 * i + j)];
+            const double nv = j / 31.0, r = i / 31.0, light = abr[2];
+            if (light < 1e-4 || nv == 0) continue;
+            scale.push_back({nv, r, abr[0], light});
+            shear.push_back({nv, r, abr[1], light});
+            reflected.push_back({nv, r, -std::log(light), light});
+        }
+    const auto one = [](double, double) { return 1.0; };
+    fit("fibre_albedo: -log of it (error as albedo)", reflected,
+        {one,
+         [](double n, double r) {
+             return std::vector<double>{1, n, n * n, r, n * r, n * n * r, r * r, n * r * r, r * r * r};
+         },
+         [](double n, double r) { return std::vector<double>{r * r, r, n * r, n * r * r}; }});
+    fit("fibre_transform: A (error times albedo)", scale,
+        {one, [](double n, double r) { return std::vector<double>{1, n, n * n, r, n * r, r * r}; },
+         [](double n, double r) { return std::vector<double>{1, n, r, n * r}; }});
+    fit("fibre_transform: B, times (1 - r) sqrt(1 - n) (error times albedo)", shear,
+        {[](double n, double r) { return std::sqrt(1 - n) * (1 - r); },
+         [](double n, double r) { return std::vector<double>{r, n * r, r * r, n * r * r, r * r * r, n * n}; },
+         [](double n, double r) { return std::vector<double>{1, n * n, r * r, n * r * r}; }});
+    return true;
+}
+
 // Compares sheen_excess, made by hand from the albedo along the surface, with the albedo where that exceeds 1.
 void checkSheenExcess() {
     double most = 0;
@@ -308,7 +351,8 @@ void checkSheenExcess() {
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+    if (argc > 1) return fitSheenVolume(argv[1]) ? 0 : 1;
     // Both ends are where the curves bend: the grid is denser towards a view along the surface and a smooth surface.
     std::vector<Point> white, edge, sheen, burley, qualitative, fujii;
     double most = 0, mostSheen = 0;

@@ -1,0 +1,259 @@
+#version 400
+
+// principled
+
+uniform vec3 u_viewPosition = vec3(0.0);
+uniform mat4 u_envMatrix = mat4(-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+uniform float u_envLightIntensity = 1.0;
+uniform int u_envRadianceMips = 1;
+uniform int u_envRadianceSamples = 16;
+uniform bool u_refractionTwoSided = false;
+uniform sampler2D u_envRadiance;
+uniform sampler2D u_envIrradiance;
+
+uniform vec3 SR_baseColor = vec3(0.5, 0.2, 0.1);
+uniform float SR_metallic = 0.3;
+uniform float SR_specularTint = 0.5;
+uniform float SR_sheen = 0.4;
+uniform float SR_clearcoat = 0.8;
+uniform float SR_clearcoatGloss = 0.7;
+uniform float SR_specTrans = 0.2;
+uniform float SR_subsurface = 0.3;
+
+in VertexData
+{
+    vec3 positionWorld;
+    vec3 normalWorld;
+} vd;
+
+out vec4 out1;
+
+// The frame in which roughness is given.
+vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
+{
+    vec3 tangent = V - N * dot(N, V);
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    y = cross(N, x);
+    return x;
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level(vec3 alpha, float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (reach * (6.2831855 * alpha.x * alpha.y)));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+vec3 microfacet_cap(int i, float descent, vec3 s)
+{
+    float k = float(i);
+    float azimuth = 2.3999631 * k;
+    float z = 1.0 - descent * (k + 0.5);
+    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+}
+
+// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
+vec3 environment_lookup(sampler2D map, vec3 d, float level)
+{
+    float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
+    return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
+}
+
+// Light from the direction d of the map, at the level for its sample.
+vec3 microfacet_lookup(vec3 d, float level, float ratio)
+{
+    float r2 = ratio * ratio;
+    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    return environment_lookup(u_envRadiance, d, level2);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection(float roughness, vec3 N, vec3 V, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float mean = clamp(roughness, 0.0001, 1.0);
+    vec3 alpha = vec3(mean, mean, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = alpha * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float x2 = mean * mean;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level(alpha, reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = alpha * h;
+        vec3 L = reflect(-v, normalize(slope));
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
+        total += weight;
+        light += weight * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += weight;
+    }
+    vec3 once = share / total;
+    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level2(float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (0.3926991 * reach));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
+// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
+vec3 microfacet_fresnel(vec3 base, vec3 rise, float c)
+{
+    float t = max(1.0 - c, 0.0);
+    float t2 = t * t;
+    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = vec3(0.25, 0.25, 1.0) * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level2(reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = vec3(0.25, 0.25, 1.0) * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0625)));
+        vec3 F = weight * microfacet_fresnel(base, rise, dot(v, H));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 once = share / total;
+    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+// Its directional albedo by quadrature, fitted by tools/fit.
+float sheen_fit(float NV)
+{
+    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + 0.3 * (13.7158 - 4.94826 * NV - 0.20962621);
+    return x / (13.4539 * NV + 1.0 + 0.3 * (11.4431 * NV + 26.6426));
+}
+
+vec3 sheen_bsdf_environment(vec3 color, vec3 N, vec3 V, out vec3 albedo)
+{
+    float share = clamp(sheen_fit(clamp(dot(N, V), 0.0001, 1.0)), 0.0, 1.0);
+    vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    albedo = vec3(share);
+    return color * share * v;
+}
+
+// Directional albedo of a white surface by quadrature, fitted by tools/fit.
+float burley_fit(vec3 N, vec3 V)
+{
+    float t = 1.0 - clamp(dot(N, V), 0.0001, 1.0);
+    float t2 = t * t;
+    float t5 = t * (t2 * t2);
+    return t5 * (0.5 * (1.146822 - 0.183363 * t5) - 0.486356) + 1.0058225;
+}
+
+vec3 burley_diffuse_bsdf_environment(vec3 color, vec3 N, vec3 V)
+{
+    vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    return color * min(burley_fit(N, V), 1.0) * v;
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level3(float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (6.283185e-08 * reach));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Light that n visible normals refract from the environment, through a solid sphere: in at the near side with the
+// half vector H, out at the far side, whose normal there is along dot(R, H) R - H / 2. What the surface mirrors
+// instead is not taken away here.
+vec3 microfacet_refraction(vec3 N, vec3 V)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = vec3(0.0001, 0.0001, 1.0) * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float level = microfacet_level3(NV + stretched);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    vec3 radiance = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = vec3(0.0001, 0.0001, 1.0) * h;
+        vec3 H = normalize(slope);
+        vec3 R = refract(-v, H, 0.6666667);
+        vec3 d = frame * refract(R, normalize(R * dot(H, R) - 0.5 * H), 1.5);
+        radiance += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+    }
+    return radiance / max(count, 1.0);
+}
+
+void main()
+{
+    float coat_reflectance = 0.04 * SR_clearcoat;
+    float coat_roughness = 1.0 - SR_clearcoatGloss;
+    vec3 normal = normalize(vd.normalWorld);
+    vec3 specular_color = mix(vec3(1.0), SR_baseColor, SR_specularTint);
+    float matte_weight = 1.0 - SR_metallic;
+    vec3 V = normalize(u_viewPosition - vd.positionWorld);
+    vec3 N = faceforward(normal, -V, normal);
+    vec3 coat_lobe_albedo;
+    vec3 coat_lobe = microfacet_reflection(coat_roughness * coat_roughness, N, V, coat_lobe_albedo);
+    vec3 passed = 1.0 - coat_reflectance * coat_lobe_albedo;
+    vec3 v = matte_weight * passed;
+    vec3 specular_lobe_albedo;
+    vec3 specular_lobe = microfacet_reflection2(specular_color, 1.0 - specular_color, N, V, specular_lobe_albedo);
+    vec3 passed2 = v * (1.0 - 0.04 * specular_lobe_albedo);
+    vec3 v2 = passed2 * (1.0 - SR_specTrans);
+    vec3 sheen_lobe_albedo;
+    vec3 sheen_lobe = sheen_bsdf_environment(mix(vec3(1.0), SR_baseColor, 0.5), N, V, sheen_lobe_albedo);
+    vec3 passed3 = v2 * (1.0 - SR_sheen * sheen_lobe_albedo);
+    vec3 diffuse = burley_diffuse_bsdf_environment(SR_baseColor, N, V);
+    vec3 scattered = SR_baseColor * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    vec3 inside = u_refractionTwoSided ? SR_baseColor * SR_baseColor : SR_baseColor;
+    vec3 albedo;
+    vec3 metal = microfacet_reflection2(SR_baseColor, 1.0 - SR_baseColor, N, V, albedo);
+    vec3 v3 = matte_weight * (passed3 * (1.0 - SR_subsurface)) * diffuse;
+    vec3 v4 = v3 + SR_subsurface * passed3 * scattered + sheen_lobe * (SR_sheen * v2);
+    vec3 v5 = v4 + SR_specTrans * passed2 * (inside * microfacet_refraction(N, V));
+    vec3 v6 = v5 + specular_lobe * (0.04 * v) + SR_metallic * passed * metal;
+    out1 = vec4((v6 + coat_reflectance * coat_lobe) * u_envLightIntensity, 1.0);
+}

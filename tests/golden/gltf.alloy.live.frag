@@ -1,0 +1,412 @@
+#version 400
+
+// alloy
+
+uniform vec3 u_viewPosition = vec3(0.0);
+uniform mat4 u_envMatrix = mat4(-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+uniform float u_envLightIntensity = 1.0;
+uniform int u_envRadianceMips = 1;
+uniform int u_envRadianceSamples = 16;
+uniform sampler2D u_envRadiance;
+uniform sampler2D u_envIrradiance;
+
+uniform vec3 wheel_base_color = vec3(0.7, 0.7, 0.75);
+uniform float wheel_metallic = 0.6;
+uniform float wheel_roughness = 0.4;
+uniform float wheel_alpha = 0.7;
+uniform float wheel_iridescence_thickness = 350.0;
+uniform vec3 wheel_sheen_color = vec3(0.1, 0.2, 0.3);
+uniform float wheel_sheen_roughness = 0.6;
+uniform float wheel_clearcoat = 0.5;
+uniform float wheel_anisotropy_strength = 0.5;
+uniform float wheel_anisotropy_rotation = 0.8;
+
+in VertexData
+{
+    vec3 positionWorld;
+    vec3 normalWorld;
+    vec3 tangentWorld;
+} vd;
+
+out vec4 out1;
+
+// Turns a vector about an axis by an angle in degrees (Rodrigues' formula).
+vec3 rotate_about(vec3 v, float degrees2, vec3 axis)
+{
+    vec3 a = normalize(axis);
+    float angle = radians(degrees2);
+    float cosine = cos(angle);
+    return v * cosine + cross(v, a) * sin(angle) + a * (dot(v, a) * (1.0 - cosine));
+}
+
+// The frame in which roughness is given.
+vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
+{
+    vec3 tangent = V - N * dot(N, V);
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    y = cross(N, x);
+    return x;
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level(float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (6.283185e-08 * reach));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+vec3 microfacet_cap(int i, float descent, vec3 s)
+{
+    float k = float(i);
+    float azimuth = 2.3999631 * k;
+    float z = 1.0 - descent * (k + 0.5);
+    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+}
+
+// Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
+float fresnel_dielectric(float c)
+{
+    float u = sqrt(max(c * c + 1.25, 0.0));
+    float p = u / 2.25;
+    float rs = (c - u) / (c + u);
+    float rp = (c - p) / (c + p);
+    return 0.5 * (rs * rs + rp * rp);
+}
+
+// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
+vec3 environment_lookup(sampler2D map, vec3 d, float level)
+{
+    float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
+    return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
+}
+
+// Light from the direction d of the map, at the level for its sample.
+vec3 microfacet_lookup(vec3 d, float level, float ratio)
+{
+    float r2 = ratio * ratio;
+    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    return environment_lookup(u_envRadiance, d, level2);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = vec3(0.0001, 0.0001, 1.0) * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level(reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = vec3(0.0001, 0.0001, 1.0) * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 9.999999e-09)));
+        float F = weight * fresnel_dielectric(dot(v, H));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 once = share / total;
+    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+// Its directional albedo by quadrature, fitted by tools/fit.
+float sheen_fit(float roughness, float NV)
+{
+    float r = clamp(roughness, 0.01, 1.0);
+    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + r * (13.7158 - 4.94826 * NV - 0.698754 * r);
+    return x / (13.4539 * NV + 1.0 + r * (11.4431 * NV + 26.6426));
+}
+
+vec3 sheen_bsdf_environment(vec3 color, float roughness, vec3 N, vec3 V, out vec3 albedo)
+{
+    float share = clamp(sheen_fit(roughness, clamp(dot(N, V), 0.0001, 1.0)), 0.0, 1.0);
+    vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    albedo = vec3(share);
+    return color * share * v;
+}
+
+// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
+// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
+vec3 fresnel_admittance(float c, out vec3 w)
+{
+    float t = 1.3313609 - (1.0 - c * c);
+    vec3 m = sqrt(vec3(t * t));
+    w = sqrt(max(0.5 * (m - t), 0.0));
+    return sqrt(max(0.5 * (t + m), 0.0));
+}
+
+// Reflectance at an interface of admittance u + iw.
+vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
+{
+    vec3 v = c - u;
+    vec3 v2 = w * w;
+    vec3 v3 = c + u;
+    return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
+}
+
+// Response of the eye, as XYZ, to interference of one order, from its phase difference at unit wave number and the
+// shift at the interfaces: four Gaussians in wave number (Belcour and Barla 2017, eq. 10 and their numbers).
+vec3 interference(float phase, vec3 shift)
+{
+    vec3 v = vec3(9.04581e-08, 1.068737e-07, 1.069699e-07) * cos(shift + vec3(1681000.0, 1795300.0, 2208400.0) * phase);
+    vec3 v2 = vec3(1.644e-08 * cos(2239900.0 * phase + shift.x) * exp(phase * (-4528200000.0 * phase)), 0.0, 0.0);
+    return 9358910.0 * (v * exp(phase * (vec3(-4327800000.0, -9304600000.0, -6612100000.0) * phase)) + v2);
+}
+
+// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
+// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
+// nanometres.
+vec3 fresnel_thin_film(float c, float thickness)
+{
+    float inside = sqrt(1.0 - (1.0 - c * c) / 1.6899998);
+    float phase = inside * (1.633628e-08 * thickness);
+    vec3 w;
+    vec3 u = fresnel_admittance(inside, w);
+    vec3 up = 0.75111115 * u;
+    vec3 wp = 0.75111115 * w;
+    float x = 1.3 * inside;
+    float x2 = inside / 1.3;
+    float x3 = -2.0 * inside;
+    float x4 = inside * inside;
+    vec3 u2 = u;
+    vec3 w2 = w;
+    vec3 sum = vec3(0.0);
+    for (int p = 0; p < 2; p++)
+    {
+        float y = p == 0 ? x : x2;
+        float r = (c - y) / (c + y);
+        float R12 = r * r;
+        float T = 1.0 - R12;
+        vec3 R23 = fresnel_reflectance(inside, u2, w2);
+        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
+        vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
+        vec3 R123 = R12 * R23;
+        vec3 steady = R23 * (T * T) / (1.0 - R123);
+        vec3 R123_2 = sqrt(R123);
+        vec3 sum2 = sum + R12 + steady;
+        vec3 wave = steady - T;
+        for (int i = 0; i < 2; i++)
+        {
+            vec3 wave2 = R123_2 * wave;
+            float x5 = float(i + 1);
+            sum2 += 2.0 * wave2 * interference(phase * x5, shift * x5);
+            wave = wave2;
+        }
+        u2 = up;
+        w2 = wp;
+        sum = sum2;
+    }
+    vec3 v2 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
+    return clamp(0.5 * v2, 0.0, 1.0);
+}
+
+// Schlick's curve with any exponent, bent to pass color82 times its own value at the cosine 1/7 (Hoffman 2019, eq.
+// 6).
+vec3 generalized_schlick_curve(float thinfilm_thickness, vec3 N, vec3 V, out vec3 rise)
+{
+    bool test = 0.0 < thinfilm_thickness;
+    vec3 base = fresnel_thin_film(clamp(dot(N, V), 0.0001, 1.0), thinfilm_thickness);
+    rise = test ? vec3(0.0) : vec3(0.96);
+    return test ? base : vec3(0.040000003);
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level2(vec3 alpha, float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (reach * (6.2831855 * alpha.x * alpha.y)));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
+// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
+vec3 microfacet_fresnel(vec3 base, vec3 rise, float c)
+{
+    float t = max(1.0 - c, 0.0);
+    float t2 = t * t;
+    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
+}
+
+// E: what white GGX reflects in one bounce to a view at cosine NV. Fitted by tools/fit to E by quadrature.
+float microfacet_white(float NV, float alpha)
+{
+    float scale = NV * alpha / (NV * NV + alpha * alpha * (4.4736 * NV + 0.669338));
+    float x = alpha * (NV * (0.427862 * NV + 1.88316) + 0.0766197 + alpha * (2.18724 - 0.015081 * NV));
+    return clamp(1.0 - scale * (NV * (0.0677313 - 0.519049 * NV) + 0.179275 + x), 0.01, 1.0);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V, vec3 X, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, X, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float x2 = clamp(roughness.x, 0.0001, 1.0);
+    float x3 = clamp(roughness.y, 0.0001, 1.0);
+    vec3 alpha = vec3(x2, x3, 1.0);
+    vec3 v = vec3(dot(V, x), dot(V, y), NV);
+    vec3 wide = alpha * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float mean = sqrt(x2 * x3);
+    float x4 = mean * mean;
+    float toView = sqrt(mix(NV * NV, 1.0, x4));
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level2(alpha, reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = alpha * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (toView * NL + NV * sqrt(mix(NL * NL, 1.0, x4)));
+        vec3 F = weight * microfacet_fresnel(base, rise, dot(v, H));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 once = share / total;
+    float white = microfacet_white(NV, mean);
+    float x5 = min(min(reach * total / count, 1.0) / white, 1.0);
+    vec3 all2 = mix(once, vec3(1.0), white) * x5;
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
+// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
+vec3 fresnel_admittance2(float c, vec3 n, out vec3 w)
+{
+    vec3 t = n * n - (1.0 - c * c);
+    vec3 m = sqrt(t * t);
+    w = sqrt(max(0.5 * (m - t), 0.0));
+    return sqrt(max(0.5 * (t + m), 0.0));
+}
+
+// The same for p-polarised light: the admittance divided by (n + ik)^2.
+vec3 fresnel_admittance_p(vec3 n, vec3 u, vec3 w, out vec3 wp)
+{
+    vec3 re = n * n;
+    vec3 scale = 1.0 / max(re * re, 1e-12);
+    wp = scale * (w * re);
+    return scale * (u * re);
+}
+
+// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
+// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
+// nanometres.
+vec3 fresnel_thin_film2(float c, vec3 n, float thickness)
+{
+    float inside = sqrt(1.0 - (1.0 - c * c) / 1.6899998);
+    float phase = inside * (1.633628e-08 * thickness);
+    vec3 n2 = n / 1.3;
+    vec3 w;
+    vec3 u = fresnel_admittance2(inside, n2, w);
+    vec3 wp;
+    vec3 up = fresnel_admittance_p(n2, u, w, wp);
+    float x = 1.3 * inside;
+    float x2 = inside / 1.3;
+    float x3 = -2.0 * inside;
+    float x4 = inside * inside;
+    vec3 u2 = u;
+    vec3 w2 = w;
+    vec3 sum = vec3(0.0);
+    for (int p = 0; p < 2; p++)
+    {
+        float y = p == 0 ? x : x2;
+        float r = (c - y) / (c + y);
+        float R12 = r * r;
+        float T = 1.0 - R12;
+        vec3 R23 = fresnel_reflectance(inside, u2, w2);
+        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
+        vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
+        vec3 R123 = R12 * R23;
+        vec3 steady = R23 * (T * T) / (1.0 - R123);
+        vec3 R123_2 = sqrt(R123);
+        vec3 sum2 = sum + R12 + steady;
+        vec3 wave = steady - T;
+        for (int i = 0; i < 2; i++)
+        {
+            vec3 wave2 = R123_2 * wave;
+            float x5 = float(i + 1);
+            sum2 += 2.0 * wave2 * interference(phase * x5, shift * x5);
+            wave = wave2;
+        }
+        u2 = up;
+        w2 = wp;
+        sum = sum2;
+    }
+    vec3 v2 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
+    return clamp(0.5 * v2, 0.0, 1.0);
+}
+
+// Schlick's curve with any exponent, bent to pass color82 times its own value at the cosine 1/7 (Hoffman 2019, eq.
+// 6).
+vec3 generalized_schlick_curve2(vec3 color0, float thinfilm_thickness, vec3 N, vec3 V, out vec3 rise)
+{
+    bool test = 0.0 < thinfilm_thickness;
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 root = sqrt(clamp(color0, 0.0, 0.99));
+    vec3 base = fresnel_thin_film2(NV, (root + 1.0) / (1.0 - root), thinfilm_thickness);
+    rise = test ? vec3(0.0) : 1.0 - color0;
+    return test ? base : color0;
+}
+
+void main()
+{
+    vec3 normal = normalize(vd.normalWorld);
+    vec3 v = normalize(vd.tangentWorld);
+    float sheen_weight = max(max(wheel_sheen_color.x, wheel_sheen_color.y), wheel_sheen_color.z);
+    float sheen_alpha = wheel_sheen_roughness * wheel_sheen_roughness;
+    float alpha = wheel_roughness * wheel_roughness;
+    float alpha_along_clamped = clamp(mix(alpha, 1.0, wheel_anisotropy_strength * wheel_anisotropy_strength), 1e-05, 1.0);
+    vec2 alpha_both = vec2(alpha_along_clamped, clamp(alpha, 1e-05, 1.0));
+    vec3 tangent_turned_unit = normalize(rotate_about(v, -57.29578 * wheel_anisotropy_rotation, normal));
+    vec3 tangent_used = 0.0 < abs(wheel_anisotropy_rotation) ? tangent_turned_unit : v;
+    vec3 V = normalize(u_viewPosition - vd.positionWorld);
+    vec3 N = faceforward(normal, -V, normal);
+    vec3 coat_lobe_albedo;
+    vec3 coat_lobe = microfacet_reflection(N, V, coat_lobe_albedo);
+    vec3 passed = 1.0 - wheel_clearcoat * coat_lobe_albedo;
+    vec3 sheen_lobe_albedo;
+    vec3 sheen_lobe = sheen_bsdf_environment(wheel_sheen_color / max(sheen_weight, 1e-05), sheen_alpha, N, V, sheen_lobe_albedo);
+    vec3 passed2 = passed * (1.0 - sheen_weight * sheen_lobe_albedo);
+    vec3 v2 = passed2 * (1.0 - wheel_metallic);
+    vec3 rise;
+    vec3 base = generalized_schlick_curve(wheel_iridescence_thickness, N, V, rise);
+    vec3 specular_film_albedo;
+    vec3 specular_film = microfacet_reflection2(alpha_both, base, rise, N, V, tangent_used, specular_film_albedo);
+    vec3 diffuse = wheel_base_color * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    vec3 rise2;
+    vec3 base2 = generalized_schlick_curve2(wheel_base_color, wheel_iridescence_thickness, N, V, rise2);
+    vec3 albedo;
+    vec3 metal_film = microfacet_reflection2(alpha_both, base2, rise2, N, V, tangent_used, albedo);
+    vec3 v3 = v2 * (1.0 - specular_film_albedo) * diffuse + v2 * specular_film;
+    vec3 v4 = v3 + wheel_metallic * passed2 * metal_film + sheen_lobe * (sheen_weight * passed);
+    vec3 v5 = (v4 + wheel_clearcoat * coat_lobe) * u_envLightIntensity;
+    out1 = vec4((0.5 <= wheel_alpha ? 1.0 : 0.0) * v5, 1.0);
+}

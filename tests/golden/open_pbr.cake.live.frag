@@ -1,0 +1,454 @@
+#version 400
+
+// cake
+
+uniform vec3 u_viewPosition = vec3(0.0);
+uniform mat4 u_envMatrix = mat4(-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+uniform float u_envLightIntensity = 1.0;
+uniform int u_envRadianceMips = 1;
+uniform int u_envRadianceSamples = 16;
+uniform sampler2D u_envRadiance;
+uniform sampler2D u_envIrradiance;
+
+uniform vec3 layered_base_color = vec3(0.6, 0.3, 0.1);
+uniform float layered_base_metalness = 0.4;
+uniform float layered_specular_roughness = 0.35;
+uniform float layered_fuzz_weight = 0.3;
+uniform float layered_coat_weight = 0.7;
+uniform vec3 layered_coat_color = vec3(1.0, 0.9, 0.8);
+uniform float layered_thin_film_weight = 0.5;
+uniform float layered_thin_film_thickness = 0.4;
+uniform float layered_emission_luminance = 0.2;
+
+in VertexData
+{
+    vec3 positionWorld;
+    vec3 normalWorld;
+} vd;
+
+out vec4 out1;
+
+// Roughness of a mirror as seen through a coat.
+float open_pbr_coated_roughness(float roughness, float coat_weight)
+{
+    float base = roughness * roughness;
+    return mix(roughness, sqrt(sqrt(min(base * base, 1.0))), coat_weight);
+}
+
+// Index of the base relative to its coat, weakened.
+float open_pbr_coated_ior(float coat_weight)
+{
+    float index = mix(1.5, 1.0666667, coat_weight);
+    float amplitude = (index - 1.0) / (index + 1.0);
+    float weighted = sign(amplitude) * sqrt(clamp(amplitude * amplitude, 0.0, 0.99999));
+    return (weighted + 1.0) / (1.0 - weighted);
+}
+
+// Mode "zeltner": a layer of upright fibres in which light scatters any number of times (Zeltner, Burley and Chiang
+// 2022, Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines, eq. 1).
+float fibre_albedo(float NV)
+{
+    return exp(-(NV * (0.68819004 * NV + 0.5534177) + 0.09856644) / (0.5 * (0.102330275 * NV + 0.5353364)));
+}
+
+// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
+vec3 environment_lookup(sampler2D map, vec3 d, float level)
+{
+    float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
+    return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
+}
+
+vec3 sheen_bsdf_environment(vec3 N, vec3 V, out vec3 albedo)
+{
+    float share = fibre_albedo(clamp(dot(N, V), 0.0001, 1.0));
+    albedo = vec3(share);
+    return share * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+}
+
+// The frame in which roughness is given.
+vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
+{
+    vec3 tangent = V - N * dot(N, V);
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    y = cross(N, x);
+    return x;
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level(vec3 alpha, float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (reach * (6.2831855 * alpha.x * alpha.y)));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+vec3 microfacet_cap(int i, float descent, vec3 s)
+{
+    float k = float(i);
+    float azimuth = 2.3999631 * k;
+    float z = 1.0 - descent * (k + 0.5);
+    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+}
+
+// Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
+float fresnel_dielectric(float c, float ior)
+{
+    float n2 = max(ior * ior, 0.0001);
+    float u = sqrt(max(n2 - 1.0 + c * c, 0.0));
+    float p = u / n2;
+    float rs = (c - u) / (c + u);
+    float rp = (c - p) / (c + p);
+    return 0.5 * (rs * rs + rp * rp);
+}
+
+// Light from the direction d of the map, at the level for its sample.
+vec3 microfacet_lookup(vec3 d, float level, float ratio)
+{
+    float r2 = ratio * ratio;
+    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    return environment_lookup(u_envRadiance, d, level2);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection(float roughness, float ior, vec3 N, vec3 V, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float mean = clamp(roughness, 0.0001, 1.0);
+    vec3 alpha = vec3(mean, mean, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = alpha * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float x2 = mean * mean;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level(alpha, reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = alpha * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
+        float F = weight * fresnel_dielectric(dot(v, H), ior);
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 once = share / total;
+    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
+// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
+vec3 fresnel_admittance(float c, float n, out vec3 w)
+{
+    float t = n * n - (1.0 - c * c);
+    vec3 m = sqrt(vec3(t * t));
+    w = sqrt(max(0.5 * (m - t), 0.0));
+    return sqrt(max(0.5 * (t + m), 0.0));
+}
+
+// The same for p-polarised light: the admittance divided by (n + ik)^2.
+vec3 fresnel_admittance_p(float n, vec3 u, vec3 w, out vec3 wp)
+{
+    float re = n * n;
+    float scale = 1.0 / max(re * re, 1e-12);
+    wp = scale * (w * re);
+    return scale * (u * re);
+}
+
+// Reflectance at an interface of admittance u + iw.
+vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
+{
+    vec3 v = c - u;
+    vec3 v2 = w * w;
+    vec3 v3 = c + u;
+    return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
+}
+
+// Response of the eye, as XYZ, to interference of one order, from its phase difference at unit wave number and the
+// shift at the interfaces: four Gaussians in wave number (Belcour and Barla 2017, eq. 10 and their numbers).
+vec3 interference(float phase, vec3 shift)
+{
+    vec3 v = vec3(9.04581e-08, 1.068737e-07, 1.069699e-07) * cos(shift + vec3(1681000.0, 1795300.0, 2208400.0) * phase);
+    vec3 v2 = vec3(1.644e-08 * cos(2239900.0 * phase + shift.x) * exp(phase * (-4528200000.0 * phase)), 0.0, 0.0);
+    return 9358910.0 * (v * exp(phase * (vec3(-4327800000.0, -9304600000.0, -6612100000.0) * phase)) + v2);
+}
+
+// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
+// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
+// nanometres.
+vec3 fresnel_thin_film(float c, float n, float thickness)
+{
+    float inside = sqrt(1.0 - (1.0 - c * c) / 1.9599999);
+    float phase = inside * (1.7592917e-08 * thickness);
+    float n2 = n / 1.4;
+    vec3 w;
+    vec3 u = fresnel_admittance(inside, n2, w);
+    vec3 wp;
+    vec3 up = fresnel_admittance_p(n2, u, w, wp);
+    float x = 1.4 * inside;
+    float x2 = inside / 1.4;
+    float x3 = -2.0 * inside;
+    float x4 = inside * inside;
+    vec3 u2 = u;
+    vec3 w2 = w;
+    vec3 sum = vec3(0.0);
+    for (int p = 0; p < 2; p++)
+    {
+        float y = p == 0 ? x : x2;
+        float r = (c - y) / (c + y);
+        float R12 = r * r;
+        float T = 1.0 - R12;
+        vec3 R23 = fresnel_reflectance(inside, u2, w2);
+        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
+        vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
+        vec3 R123 = R12 * R23;
+        vec3 steady = R23 * (T * T) / (1.0 - R123);
+        vec3 R123_2 = sqrt(R123);
+        vec3 sum2 = sum + R12 + steady;
+        vec3 wave = steady - T;
+        for (int i = 0; i < 2; i++)
+        {
+            vec3 wave2 = R123_2 * wave;
+            float x5 = float(i + 1);
+            sum2 += 2.0 * wave2 * interference(phase * x5, shift * x5);
+            wave = wave2;
+        }
+        u2 = up;
+        w2 = wp;
+        sum = sum2;
+    }
+    vec3 v2 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
+    return clamp(0.5 * v2, 0.0, 1.0);
+}
+
+// A thin film's reflectance is taken once, at the angle of the view, instead of per half vector.
+vec3 dielectric_film(float ior, float thinfilm_thickness, vec3 N, vec3 V, out vec3 rise)
+{
+    bool test = 0.0 < thinfilm_thickness;
+    vec3 base = fresnel_thin_film(clamp(dot(N, V), 0.0001, 1.0), ior, thinfilm_thickness);
+    rise = test ? vec3(0.0) : vec3(1.0);
+    return test ? base : vec3(0.0);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection2(float roughness, float ior, vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float mean = clamp(roughness, 0.0001, 1.0);
+    vec3 alpha = vec3(mean, mean, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = alpha * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float x2 = mean * mean;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level(alpha, reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = alpha * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
+        vec3 F = weight * (base + rise * fresnel_dielectric(dot(v, H), ior));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 once = share / total;
+    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
+// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
+vec3 microfacet_fresnel(vec3 base, vec3 rise, float c)
+{
+    float t = max(1.0 - c, 0.0);
+    float t2 = t * t;
+    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection3(float roughness, vec3 base, vec3 rise, vec3 N, vec3 V)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float mean = clamp(roughness, 0.0001, 1.0);
+    vec3 alpha = vec3(mean, mean, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = alpha * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float x2 = mean * mean;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level(alpha, reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = alpha * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
+        vec3 F = weight * microfacet_fresnel(base, rise, dot(v, H));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 all2 = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
+    return light * (all2 / total);
+}
+
+// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
+// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
+vec3 fresnel_admittance2(float c, vec3 n, out vec3 w)
+{
+    vec3 t = n * n - (1.0 - c * c);
+    vec3 m = sqrt(t * t);
+    w = sqrt(max(0.5 * (m - t), 0.0));
+    return sqrt(max(0.5 * (t + m), 0.0));
+}
+
+// The same for p-polarised light: the admittance divided by (n + ik)^2.
+vec3 fresnel_admittance_p2(vec3 n, vec3 u, vec3 w, out vec3 wp)
+{
+    vec3 re = n * n;
+    vec3 scale = 1.0 / max(re * re, 1e-12);
+    wp = scale * (w * re);
+    return scale * (u * re);
+}
+
+// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
+// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
+// nanometres.
+vec3 fresnel_thin_film2(float c, vec3 n, float thickness)
+{
+    float inside = sqrt(1.0 - (1.0 - c * c) / 1.9599999);
+    float phase = inside * (1.7592917e-08 * thickness);
+    vec3 n2 = n / 1.4;
+    vec3 w;
+    vec3 u = fresnel_admittance2(inside, n2, w);
+    vec3 wp;
+    vec3 up = fresnel_admittance_p2(n2, u, w, wp);
+    float x = 1.4 * inside;
+    float x2 = inside / 1.4;
+    float x3 = -2.0 * inside;
+    float x4 = inside * inside;
+    vec3 u2 = u;
+    vec3 w2 = w;
+    vec3 sum = vec3(0.0);
+    for (int p = 0; p < 2; p++)
+    {
+        float y = p == 0 ? x : x2;
+        float r = (c - y) / (c + y);
+        float R12 = r * r;
+        float T = 1.0 - R12;
+        vec3 R23 = fresnel_reflectance(inside, u2, w2);
+        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
+        vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
+        vec3 R123 = R12 * R23;
+        vec3 steady = R23 * (T * T) / (1.0 - R123);
+        vec3 R123_2 = sqrt(R123);
+        vec3 sum2 = sum + R12 + steady;
+        vec3 wave = steady - T;
+        for (int i = 0; i < 2; i++)
+        {
+            vec3 wave2 = R123_2 * wave;
+            float x5 = float(i + 1);
+            sum2 += 2.0 * wave2 * interference(phase * x5, shift * x5);
+            wave = wave2;
+        }
+        u2 = up;
+        w2 = wp;
+        sum = sum2;
+    }
+    vec3 v2 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
+    return clamp(0.5 * v2, 0.0, 1.0);
+}
+
+// Schlick's curve with any exponent, bent to pass color82 times its own value at the cosine 1/7 (Hoffman 2019, eq.
+// 6).
+vec3 generalized_schlick_curve(vec3 color0, float thinfilm_thickness, vec3 N, vec3 V, out vec3 rise)
+{
+    bool test = 0.0 < thinfilm_thickness;
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 root = sqrt(clamp(color0, 0.0, 0.99));
+    vec3 base = fresnel_thin_film2(NV, (root + 1.0) / (1.0 - root), thinfilm_thickness);
+    rise = test ? vec3(0.0) : 1.0 - color0;
+    return test ? base : color0;
+}
+
+void main()
+{
+    vec3 normal = normalize(vd.normalWorld);
+    float specular_roughness_coated = open_pbr_coated_roughness(layered_specular_roughness, layered_coat_weight);
+    float alpha = specular_roughness_coated * specular_roughness_coated;
+    float film_nanometers = 1000.0 * layered_thin_film_thickness;
+    float specular_index = open_pbr_coated_ior(layered_coat_weight);
+    vec3 v = 0.3698225 / (1.0 - 0.6301775 * layered_base_color);
+    vec3 coat_darkened = mix(vec3(1.0), v, layered_coat_weight);
+    vec3 coat_passed = coat_darkened * mix(vec3(1.0), layered_coat_color, layered_coat_weight);
+    vec3 V = normalize(u_viewPosition - vd.positionWorld);
+    vec3 N = faceforward(normal, -V, normal);
+    vec3 fuzz_lobe_albedo;
+    vec3 fuzz_lobe = sheen_bsdf_environment(N, V, fuzz_lobe_albedo);
+    vec3 passed = 1.0 - layered_fuzz_weight * fuzz_lobe_albedo;
+    vec3 coat_lobe_albedo;
+    vec3 coat_lobe = microfacet_reflection(0.0, 1.6, N, V, coat_lobe_albedo);
+    vec3 v2 = coat_passed * (passed * (1.0 - layered_coat_weight * coat_lobe_albedo));
+    vec3 v3 = v2 * (1.0 - layered_base_metalness);
+    vec3 v4 = layered_base_metalness * v2;
+    vec3 rise;
+    vec3 base = dielectric_film(specular_index, film_nanometers, N, V, rise);
+    vec3 specular_film_albedo;
+    vec3 specular_film = microfacet_reflection2(alpha, specular_index, base, rise, N, V, specular_film_albedo);
+    vec3 specular_plain_albedo;
+    vec3 specular_plain = microfacet_reflection(alpha, specular_index, N, V, specular_plain_albedo);
+    vec3 passed2 = v3 * mix(1.0 - specular_plain_albedo, 1.0 - specular_film_albedo, layered_thin_film_weight);
+    float x = 1.0 - layered_thin_film_weight;
+    vec3 v5 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    vec3 metal_plain = microfacet_reflection3(alpha, layered_base_color, 1.0 - layered_base_color, N, V);
+    vec3 rise2;
+    vec3 base2 = generalized_schlick_curve(layered_base_color, film_nanometers, N, V, rise2);
+    vec3 metal_film = microfacet_reflection3(alpha, base2, rise2, N, V);
+    vec3 v6 = passed2 * (max(layered_base_color, 0.0) * v5) + specular_plain * (v3 * x);
+    vec3 v7 = v6 + specular_film * (layered_thin_film_weight * v3);
+    vec3 v8 = layered_thin_film_weight * v4 * metal_film;
+    vec3 v9 = v7 + v4 * x * metal_plain + v8;
+    vec3 light = v9 + coat_lobe * (layered_coat_weight * passed) + layered_fuzz_weight * fuzz_lobe;
+    vec3 v10 = layered_coat_color * (layered_coat_weight * (0.9467456 * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0))));
+    vec3 v11 = layered_emission_luminance * (1.0 - layered_coat_weight + v10);
+    out1 = vec4(light * u_envLightIntensity + v11, 1.0);
+}

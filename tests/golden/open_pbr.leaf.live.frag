@@ -1,0 +1,132 @@
+#version 400
+
+// leaf
+
+uniform vec3 u_viewPosition = vec3(0.0);
+uniform mat4 u_envMatrix = mat4(-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+uniform float u_envLightIntensity = 1.0;
+uniform int u_envRadianceMips = 1;
+uniform int u_envRadianceSamples = 16;
+uniform sampler2D u_envRadiance;
+uniform sampler2D u_envIrradiance;
+
+uniform float wall_subsurface_weight = 0.8;
+uniform vec3 wall_subsurface_color = vec3(0.4, 0.7, 0.2);
+uniform float wall_subsurface_scatter_anisotropy = 0.3;
+
+in VertexData
+{
+    vec3 positionWorld;
+    vec3 normalWorld;
+} vd;
+
+out vec4 out1;
+
+// The frame in which roughness is given.
+vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
+{
+    vec3 tangent = V - N * dot(N, V);
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    y = cross(N, x);
+    return x;
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level(float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (0.050893806 * reach));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+vec3 microfacet_cap(int i, float descent, vec3 s)
+{
+    float k = float(i);
+    float azimuth = 2.3999631 * k;
+    float z = 1.0 - descent * (k + 0.5);
+    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+}
+
+// Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
+float fresnel_dielectric(float c)
+{
+    float u = sqrt(max(c * c + 1.25, 0.0));
+    float p = u / 2.25;
+    float rs = (c - u) / (c + u);
+    float rp = (c - p) / (c + p);
+    return 0.5 * (rs * rs + rp * rp);
+}
+
+// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
+vec3 environment_lookup(sampler2D map, vec3 d, float level)
+{
+    float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
+    return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
+}
+
+// Light from the direction d of the map, at the level for its sample.
+vec3 microfacet_lookup(vec3 d, float level, float ratio)
+{
+    float r2 = ratio * ratio;
+    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    return environment_lookup(u_envRadiance, d, level2);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = vec3(0.09, 0.09, 1.0) * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level(reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = vec3(0.09, 0.09, 1.0) * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0081)));
+        float F = weight * fresnel_dielectric(dot(v, H));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 once = share / total;
+    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+void main()
+{
+    vec3 normal = normalize(vd.normalWorld);
+    vec3 subsurface_color_positive = max(wall_subsurface_color, 0.0);
+    vec3 V = normalize(u_viewPosition - vd.positionWorld);
+    vec3 N = faceforward(normal, -V, normal);
+    vec3 specular_plain_albedo;
+    vec3 specular_plain = microfacet_reflection(N, V, specular_plain_albedo);
+    vec3 passed = 1.0 - specular_plain_albedo;
+    vec3 v = 0.5 * (wall_subsurface_weight * passed);
+    vec3 v2 = wall_subsurface_color * (wall_subsurface_scatter_anisotropy + 1.0) * v;
+    vec3 v3 = wall_subsurface_color * (1.0 - wall_subsurface_scatter_anisotropy) * v;
+    mat3 m = mat3(u_envMatrix);
+    vec3 v4 = environment_lookup(u_envIrradiance, m * N, 0.0);
+    vec3 v5 = environment_lookup(u_envIrradiance, m * -normal, 0.0);
+    vec3 v6 = passed * (1.0 - wall_subsurface_weight) * (0.8 * v4);
+    vec3 v7 = v6 + v2 * (subsurface_color_positive * v5);
+    vec3 light = specular_plain + v7 + v3 * (subsurface_color_positive * v4);
+    out1 = vec4(light * u_envLightIntensity, 1.0);
+}

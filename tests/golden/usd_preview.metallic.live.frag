@@ -1,0 +1,335 @@
+#version 400
+
+// metallic
+
+uniform vec3 u_viewPosition = vec3(0.0);
+uniform mat4 u_envMatrix = mat4(-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+uniform float u_envLightIntensity = 1.0;
+uniform int u_envRadianceMips = 1;
+uniform int u_envRadianceSamples = 16;
+uniform sampler2D u_envRadiance;
+uniform sampler2D u_envIrradiance;
+
+uniform vec3 by_metallic_diffuseColor = vec3(0.8, 0.6, 0.3);
+uniform float by_metallic_metallic = 0.5;
+uniform float by_metallic_clearcoat = 0.4;
+uniform float by_metallic_opacity = 0.6;
+
+in VertexData
+{
+    vec3 positionWorld;
+    vec3 normalWorld;
+} vd;
+
+out vec4 out1;
+
+// The complex index of refraction of a metal from its colour face on and at the edge (O. Gulbrandsen, Artist Friendly
+// Metallic Fresnel, JCGT 2014, equations 5 and 6).
+vec3 artistic_ior(vec3 reflectivity, vec3 edge_color, out vec3 extinction)
+{
+    vec3 r = clamp(reflectivity, 0.0, 0.99);
+    vec3 root = sqrt(r);
+    vec3 v = 1.0 - r;
+    vec3 n = mix((root + 1.0) / (1.0 - root), v / (r + 1.0), edge_color);
+    vec3 above = n + 1.0;
+    vec3 below = n - 1.0;
+    extinction = sqrt(max((r * (above * above) - below * below) / v, 0.0));
+    return n;
+}
+
+// The frame in which roughness is given.
+vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
+{
+    vec3 tangent = V - N * dot(N, V);
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    y = cross(N, x);
+    return x;
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level(float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (6.283185e-08 * reach));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+vec3 microfacet_cap(int i, float descent, vec3 s)
+{
+    float k = float(i);
+    float azimuth = 2.3999631 * k;
+    float z = 1.0 - descent * (k + 0.5);
+    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+}
+
+// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
+// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
+vec3 microfacet_fresnel(float c)
+{
+    float t = max(1.0 - c, 0.0);
+    float t2 = t * t;
+    return vec3(clamp(0.96 * (t * (t2 * t2)) + 0.040000003, 0.0, 1.0));
+}
+
+// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
+vec3 environment_lookup(sampler2D map, vec3 d, float level)
+{
+    float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
+    return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
+}
+
+// Light from the direction d of the map, at the level for its sample.
+vec3 microfacet_lookup(vec3 d, float level, float ratio)
+{
+    float r2 = ratio * ratio;
+    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    return environment_lookup(u_envRadiance, d, level2);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = vec3(0.0001, 0.0001, 1.0) * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level(reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = vec3(0.0001, 0.0001, 1.0) * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 9.999999e-09)));
+        vec3 F = weight * microfacet_fresnel(dot(v, H));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 once = share / total;
+    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+// The level of detail of samples, but for what differs from one to the next.
+float microfacet_level2(float reach)
+{
+    float x = 0.5 * log2(float(u_envRadianceSamples) / (0.3926991 * reach));
+    return float(u_envRadianceMips) - 2.5 - x;
+}
+
+// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
+// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
+vec3 microfacet_fresnel2(vec3 base, vec3 rise, float c)
+{
+    float t = max(1.0 - c, 0.0);
+    float t2 = t * t;
+    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = vec3(0.25, 0.25, 1.0) * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level2(reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = vec3(0.25, 0.25, 1.0) * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0625)));
+        vec3 F = weight * microfacet_fresnel2(base, rise, dot(v, H));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 once = share / total;
+    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * all2;
+    return light * (all2 / total);
+}
+
+// Reflectance at an interface of admittance u + iw.
+vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
+{
+    vec3 v = c - u;
+    vec3 v2 = w * w;
+    vec3 v3 = c + u;
+    return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
+}
+
+// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
+// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
+vec3 fresnel_admittance(float c, vec3 n, vec3 k, out vec3 w)
+{
+    vec3 t = n * n - k * k - (1.0 - c * c);
+    vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
+    w = sqrt(max(0.5 * (m - t), 0.0));
+    return sqrt(max(0.5 * (t + m), 0.0));
+}
+
+// The same for p-polarised light: the admittance divided by (n + ik)^2.
+vec3 fresnel_admittance_p(vec3 n, vec3 k, vec3 u, vec3 w, out vec3 wp)
+{
+    vec3 re = n * n - k * k;
+    vec3 im = k * (2.0 * n);
+    vec3 scale = 1.0 / max(re * re + im * im, 1e-12);
+    wp = scale * (w * re - u * im);
+    return scale * (u * re + w * im);
+}
+
+// Reflectance of a conductor of index n + ik for unpolarised light; exact.
+vec3 fresnel_conductor(float c, vec3 n, vec3 k)
+{
+    vec3 w;
+    vec3 u = fresnel_admittance(c, n, k, w);
+    vec3 wp;
+    vec3 up = fresnel_admittance_p(n, k, u, w, wp);
+    vec3 v = fresnel_reflectance(c, u, w);
+    return 0.5 * (v + fresnel_reflectance(c, up, wp));
+}
+
+// A conductor's reflectance as a curve that costs little per half vector: with x = 1 - c, F = base + rise x^5 + c x^2
+// (bend + dip x^4).
+vec3 fresnel_curve(vec3 F0, vec3 F60, vec3 F82, out vec3 bend, out vec3 dip)
+{
+    vec3 rise = 1.0 - F0;
+    vec3 more60 = F60 - F0 - 0.03125 * rise;
+    vec3 more82 = F82 - F0 - 0.46266437 * rise;
+    bend = 9.047614 * more60 - 1.247679 * more82;
+    dip = 19.962864 * more82 - 16.761822 * more60;
+    return rise;
+}
+
+// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
+// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
+vec3 microfacet_fresnel3(vec3 base, vec3 rise, vec3 bend, vec3 dip, float c)
+{
+    float t = max(1.0 - c, 0.0);
+    float t2 = t * t;
+    float t4 = t2 * t2;
+    return clamp(base + rise * (t * t4) + (bend + dip * t4) * (c * t2), 0.0, 1.0);
+}
+
+// Light that n visible normals mirror from the environment.
+vec3 microfacet_reflection3(vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = vec3(0.25, 0.25, 1.0) * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float reach = NV + stretched;
+    float level = microfacet_level2(reach);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = vec3(0.25, 0.25, 1.0) * h;
+        vec3 H = normalize(slope);
+        vec3 L = reflect(-v, H);
+        float NL = max(L.z, 0.0);
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0625)));
+        vec3 F = weight * microfacet_fresnel3(base, rise, bend, dip, dot(v, H));
+        total += weight;
+        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        share += F;
+    }
+    vec3 all2 = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
+    return light * (all2 / total);
+}
+
+// Light that n visible normals refract from the environment, through a solid sphere: in at the near side with the
+// half vector H, out at the far side, whose normal there is along dot(R, H) R - H / 2. What the surface mirrors
+// instead is not taken away here.
+vec3 microfacet_refraction(vec3 N, vec3 V)
+{
+    vec3 y;
+    vec3 x = microfacet_frame(N, V, y);
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+    vec3 wide = vec3(0.0001, 0.0001, 1.0) * v;
+    float stretched = length(wide);
+    vec3 s = wide / stretched;
+    float count = float(u_envRadianceSamples);
+    float descent = (s.z + 1.0) / count;
+    float level = microfacet_level(NV + stretched);
+    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    vec3 radiance = vec3(0.0);
+    for (int i = 0; i < u_envRadianceSamples; i++)
+    {
+        vec3 h = microfacet_cap(i, descent, s);
+        vec3 slope = vec3(0.0001, 0.0001, 1.0) * h;
+        vec3 H = normalize(slope);
+        vec3 R = refract(-v, H, 0.6666667);
+        vec3 d = frame * refract(R, normalize(R * dot(H, R) - 0.5 * H), 1.5);
+        radiance += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+    }
+    return radiance / max(count, 1.0);
+}
+
+void main()
+{
+    vec3 surface_normal = normalize(vd.normalWorld);
+    float nonmetal = 1.0 - by_metallic_metallic;
+    vec3 metal_index_extinction;
+    vec3 metal_index_ior = artistic_ior(by_metallic_diffuseColor, by_metallic_diffuseColor, metal_index_extinction);
+    vec3 specular_color90 = mix(vec3(1.0), by_metallic_diffuseColor, by_metallic_metallic);
+    vec3 specular_color0 = mix(0.040000003 * specular_color90, specular_color90, by_metallic_metallic);
+    vec3 V = normalize(u_viewPosition - vd.positionWorld);
+    vec3 N = faceforward(surface_normal, -V, surface_normal);
+    vec3 coat_lobe_albedo;
+    vec3 coat_lobe = microfacet_reflection(N, V, coat_lobe_albedo);
+    vec3 passed = 1.0 - by_metallic_clearcoat * coat_lobe_albedo;
+    vec3 v = nonmetal * passed;
+    vec3 specular_lobe_albedo;
+    vec3 specular_lobe = microfacet_reflection2(specular_color0, specular_color90 - specular_color0, N, V, specular_lobe_albedo);
+    vec3 passed2 = v * (1.0 - specular_lobe_albedo);
+    vec3 base = fresnel_reflectance(1.0, metal_index_ior, metal_index_extinction);
+    vec3 F60 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction);
+    vec3 bend;
+    vec3 dip;
+    vec3 rise = fresnel_curve(base, F60, fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction), bend, dip);
+    vec3 metal = microfacet_reflection3(base, rise, bend, dip, N, V);
+    vec3 diffuse = by_metallic_diffuseColor * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    vec3 v2 = passed2 * (1.0 - by_metallic_opacity) * microfacet_refraction(N, V);
+    vec3 v3 = v * specular_lobe + by_metallic_metallic * passed * metal + v2;
+    vec3 v4 = v3 + nonmetal * (by_metallic_opacity * passed2) * diffuse;
+    vec3 v5 = (v4 + by_metallic_clearcoat * coat_lobe) * u_envLightIntensity;
+    out1 = vec4((0.0 <= by_metallic_opacity ? 1.0 : 0.0) * v5, 1.0);
+}
