@@ -117,9 +117,11 @@ struct Shader {
                 case Op::ClosureScale:
                     lit[i] = {product(lit[o[0].index].color, copy[o[1]]), lit[o[0].index].opacity};
                     break;
-                case Op::Retype:
-                    lit[i] = lit[o[0].index];
+                case Op::Retype: {  // a shader as a material; that of a volume gives no light here
+                    const Lit of = lit[o[0].index];
+                    lit[i] = of.color ? of : Lit{black(), one()};
                     break;
+                }
                 default:
                     lit[i] = {black(), one()};  // nothing that gives light
             }
