@@ -410,7 +410,7 @@ constexpr Wrong kWrong[] = {
     {"BadValues",
      "<add name='a' type='float'>\n<input name='in1' type='float' value='much'/>\n<input name='in2' type='float' "
      "value=''/>\n</add>",
-     "a", "bad-value ", 3},
+     "a", "bad-value bad-value ", 3},
 };
 
 std::string nameOfWrong(const testing::TestParamInfo<Wrong>& which) { return which.param.name; }

@@ -177,8 +177,11 @@ struct Lowerer {
 
     ExprId written(doc::ElementId element, Type type, const Input* input, const Node* owner) {
         if (type == Type::Texture2D) return texture(element, owner);
-        std::string problem;
-        ExprId value = constantOf(b, type, d.attributeText(element, d.known().value), &problem);
+        const Name given = d.attribute(element, d.known().value);
+        std::string problem = "there is none";
+        ExprId value;
+        if (!given || !d.text(given).empty() || componentCount(type) == 0)
+            value = constantOf(b, type, d.text(given), &problem);
         if (!value) {
             error(element, "bad-value", fmt::format("bad value of type {}: {}", info(type).name, problem));
             return {};

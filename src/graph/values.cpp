@@ -24,6 +24,7 @@ static std::vector<std::uint32_t> words(Type type, const doc::Value& v) {
 }
 
 std::vector<std::uint32_t> wordsOf(Type type, std::string_view text) {
+    if (text.empty()) return std::vector<std::uint32_t>(static_cast<std::size_t>(componentCount(type)));
     std::optional<doc::Value> v = parse(type, text, nullptr);
     return v ? words(type, *v) : std::vector<std::uint32_t>();
 }
