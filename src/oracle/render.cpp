@@ -307,8 +307,19 @@ struct PixelStage {
 
 // ---- The host's side ----
 
+// The environment as textures.
+struct Sky {
+    std::shared_ptr<const Texture> radiance, irradiance;
+
+    explicit Sky(const scene::Environment& e)
+        : radiance(std::make_shared<const Texture>(e.radiance, true, Sampling{})),
+          irradiance(std::make_shared<const Texture>(e.irradiance, false, Sampling{})) {}
+};
+
 struct Host {
     const RenderJob& job;
+    const scene::Mesh& mesh;
+    std::optional<Sky>& builtIn;  // filled by the first who needs it
     Diagnostics& diagnostics;
     World world = {};
     std::map<std::string, std::shared_ptr<const Image>> files = {};  // null: cannot be read
@@ -429,15 +440,18 @@ struct Host {
     }
 
     bool makeWorld() {
-        const Result<scene::Environment> sky = job.environment.empty()
-                                                   ? Result<scene::Environment>(scene::builtInSky())
-                                                   : scene::loadEnvironment(job.environment, kMaxSide, diagnostics);
-        if (!sky) return false;
-        const auto radiance = std::make_shared<const Texture>(sky->radiance, true, Sampling{});
-        world.maps[Context::EnvironmentRadiance] = radiance;
-        world.maps[Context::EnvironmentIrradiance] =
-            std::make_shared<const Texture>(sky->irradiance, false, Sampling{});
-        setContexts(radiance->levels());
+        std::optional<Sky> own;
+        if (!job.environment.empty()) {
+            const Result<scene::Environment> loaded = scene::loadEnvironment(job.environment, kMaxSide, diagnostics);
+            if (!loaded) return false;
+            own.emplace(*loaded);
+        } else if (!builtIn) {
+            builtIn.emplace(scene::builtInSky());
+        }
+        const Sky& sky = own ? *own : *builtIn;
+        world.maps[Context::EnvironmentRadiance] = sky.radiance;
+        world.maps[Context::EnvironmentIrradiance] = sky.irradiance;
+        setContexts(sky.radiance->levels());
         setUniforms();
         loadTextures();
         return true;
@@ -453,7 +467,6 @@ struct Host {
         }
         const int side = job.size * factor;
         if (!makeWorld()) return Failure{};
-        const scene::Mesh mesh = scene::makeSphere(128, 64);
         Vertices vertices;
         if (!runVertices(job, world, mesh, vertices, diagnostics)) return Failure{};
         const ir::Function* pixel = job.module->findOwn(job.interface->pixel);
@@ -470,14 +483,24 @@ struct Host {
 
 }  // namespace
 
-Result<Image> render(const RenderJob& job, Diagnostics& diagnostics) {
+struct Studio::State {
+    scene::Mesh mesh = scene::makeSphere(128, 64);
+    std::optional<Sky> sky = {};
+};
+
+Studio::Studio() : state_(std::make_unique<State>()) {}
+Studio::~Studio() = default;
+
+Result<Image> Studio::render(const RenderJob& job, Diagnostics& diagnostics) {
     try {
-        return Host{job, diagnostics}.run();
+        return Host{job, state_->mesh, state_->sky, diagnostics}.run();
     } catch (const std::bad_alloc&) {
         diagnostics.error("bad-size", fmt::format("a picture of {0}×{0} pixels does not fit into memory", job.size));
         return Failure{};
     }
 }
+
+Result<Image> render(const RenderJob& job, Diagnostics& diagnostics) { return Studio().render(job, diagnostics); }
 
 bool draw(const RenderJob& job, Diagnostics& diagnostics) {
     if (!scene::checkOutput(job, diagnostics)) return false;

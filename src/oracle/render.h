@@ -2,6 +2,8 @@
 // interpolation as in draw/, shaded by the interpreter of the IR. Where the two pictures differ, one of them is wrong.
 #pragma once
 
+#include <memory>
+
 #include "base/diagnostics.h"
 #include "base/result.h"
 #include "image/image.h"
@@ -18,9 +20,23 @@ struct RenderJob : scene::Settings {
     int threads = 0;  // 0: as many as the machine has; the picture does not depend on it
 };
 
-// Linear float RGBA, colours multiplied by coverage, top row first.
-// Errors: bad-size, what the interpreter reports, and readImage's for the environment. Warnings: missing-texture (the
-// default colour is drawn), unbound-sampler (white is drawn), unbound-attribute, unused-uniform, bad-uniform-value.
+// What many pictures share: the sphere, and the built-in sky, made when a job first needs it. Serves one thread.
+class Studio {
+  public:
+    Studio();
+    ~Studio();
+    // Linear float RGBA, colours multiplied by coverage, top row first.
+    // Errors: bad-size, what the interpreter reports, and readImage's for the environment. Warnings: missing-texture
+    // (the default colour is drawn), unbound-sampler (white is drawn), unbound-attribute, unused-uniform,
+    // bad-uniform-value.
+    Result<image::Image> render(const RenderJob& job, Diagnostics& diagnostics);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// The same in a studio for this one job.
 Result<image::Image> render(const RenderJob& job, Diagnostics& diagnostics);
 
 // Draws and writes job.output. Also errors: unknown-output-format, cannot-write-file.

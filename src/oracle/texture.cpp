@@ -80,6 +80,9 @@ Texture::Texture(const Image& picture, bool levels, const Sampling& sampling) : 
     const Image rgba = toRgba(picture);
     levels_.push_back({rgba.width, rgba.height, rgba.floats, rgba.bytes});
     byteFilter_ = !rgba.isFloat && isSimple(sampling.u) && isSimple(sampling.v);
+    // OpenGL clamps the border's colour to what the texels can hold.
+    if (!rgba.isFloat)
+        for (float& c : sampling_.border) c = std::clamp(c, 0.0f, 1.0f);
     while (levels && (levels_.back().width > 1 || levels_.back().height > 1)) levels_.push_back(halved(levels_.back()));
 }
 
