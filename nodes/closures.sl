@@ -1,6 +1,6 @@
 // Parameters of closures, and what is emitted.
 
-// GGX roughness along and across the tangent: a lobe stretched by the anisotropy keeps its roughness as the geometric
+// GGX roughness along and across the tangent. A lobe stretched by the anisotropy keeps its roughness as the geometric
 // mean.
 vector2 roughness_anisotropy(float roughness, float anisotropy) {
     float alpha = roughness * roughness;
@@ -14,8 +14,8 @@ vector2 roughness_dual(vector2 roughness) {
     return vector2(x, roughness.y < 0.0 ? x : roughness.y * roughness.y);
 }
 
-// The complex index of refraction of a metal from its colour face on and at the edge (O. Gulbrandsen, Artist Friendly
-// Metallic Fresnel, JCGT 2014, equations 5 and 6).
+// The complex index of refraction of a metal from its colour face on and at the edge. (O. Gulbrandsen, Artist Friendly
+// Metallic Fresnel, JCGT 2014, equations 5 and 6.)
 void artistic_ior(color reflectivity, color edge_color, output color ior, output color extinction) {
     color r = clamp(reflectivity, 0.0, 0.99);
     color root = sqrt(r);

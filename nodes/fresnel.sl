@@ -1,8 +1,8 @@
 // Reflectance of smooth interfaces. Indices are relative to the medium the light comes from; c is the cosine of the
 // angle of incidence.
 
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
+// Admittance u + iw of an interface to the index n + ik for s-polarised light. It is what the cosine is compared with:
+// the amplitude of reflection is (c - y) / (c + y) with y = sqrt((n + ik)^2 - sin^2).
 void fresnel_admittance(float c, color n, color k, output color u, output color w)
 {
     color t = n * n - k * k - (1.0 - c * c);
@@ -29,16 +29,19 @@ color fresnel_reflectance(float c, color u, color w)
     return toward / max(away, 1e-12);
 }
 
-// Reflectance of a conductor of index n + ik for unpolarised light; exact.
+// Reflectance of a conductor of index n + ik for unpolarised light; exact, for c above 0. Written out, the squares of the
+// amplitudes for p- and s-polarised light have a ratio that needs no further root.
 color fresnel_conductor(float c, color n, color k)
 {
-    color u = color(0.0);
-    color w = color(0.0);
-    color up = color(0.0);
-    color wp = color(0.0);
-    fresnel_admittance(c, n, k, u, w);
-    fresnel_admittance_p(n, k, u, w, up, wp);
-    return 0.5 * (fresnel_reflectance(c, u, w) + fresnel_reflectance(c, up, wp));
+    float c2 = c * c;
+    float s2 = 1.0 - c2;
+    color t = n * n - k * k - s2;
+    color m = sqrt(t * t + 4.0 * n * n * k * k);
+    color a = 2.0 * c * sqrt(max(0.5 * (m + t), 0.0));
+    color b = m + c2;
+    color d = c2 * m + s2 * s2;
+    color Rs = (b - a) / (b + a);
+    return 0.5 * Rs * (1.0 + (d - s2 * a) / (d + s2 * a));
 }
 
 // Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
@@ -52,7 +55,7 @@ float fresnel_dielectric(float c, float ior)
     return 0.5 * (rs * rs + rp * rp);
 }
 
-// A conductor's reflectance as a curve that costs little per half vector: with x = 1 - c,
+// A conductor's reflectance as a curve that costs little per half vector. With x = 1 - c it is
 //     F = base + rise x^5 + c x^2 (bend + dip x^4).
 // The first two terms are Schlick's, dip is Hoffman's (2019, eq. 6) and bend ours. It is exact at the cosines 1, 1/2,
 // 1/7 and 0, and off by less than 0.01 between them for the indices that metals have.
@@ -65,8 +68,8 @@ void fresnel_curve(color F0, color F60, color F82, output color rise, output col
     dip = 19.9628640 * more82 - 16.7618217 * more60;
 }
 
-// Response of the eye, as XYZ, to interference of one order, from its phase difference at unit wave number and the
-// shift at the interfaces: four Gaussians in wave number (Belcour and Barla 2017, eq. 10 and their numbers).
+// Response of the eye to interference of one order, as XYZ (Belcour and Barla 2017, eq. 10 and their numbers). It comes
+// from the phase difference at unit wave number and the shift at the interfaces, through four Gaussians in wave number.
 color interference(float phase, color shift)
 {
     color centre = color(1.6810e6, 1.7953e6, 2.2084e6);
@@ -76,9 +79,9 @@ color interference(float phase, color shift)
     return (xyz + color(second, 0.0, 0.0)) * 9.35891e6;
 }
 
-// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
-// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
-// nanometres.
+// Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8). It is the Airy sum over the
+// orders of interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness
+// is in nanometres.
 color fresnel_thin_film(float c, color n, color k, float thickness, float film_ior)
 {
     float film = max(film_ior, 1.0);

@@ -12,14 +12,14 @@ vector microfacet_alpha(vector2 roughness)
 // surface, so that nothing needs the tangent of the mesh. Looking straight down, any x will do.
 void microfacet_frame(vector2 roughness, vector N, vector V, vector X, output vector x, output vector y)
 {
-    vector tangent = known(roughness.x == roughness.y) ? V : X;
+    vector tangent = roughness.x == roughness.y ? V : X;
     tangent -= dot(tangent, N) * N;
     vector other = abs(N.y) < 0.9 ? vector(0.0, 1.0, 0.0) : vector(1.0, 0.0, 0.0);
     x = normalize(dot(tangent, tangent) < 0.00000001 ? cross(N, other) : tangent);
     y = cross(N, x);
 }
 
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2). The cap of the
+// Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2). The cap of the
 // unit sphere is that of a view s, stretched and made unit: the half vector, stretched, is s plus a point of the sphere.
 // Heights descend evenly, azimuths turn by the golden angle.
 vector microfacet_cap(int i, float descent, vector s)
@@ -78,41 +78,41 @@ float microfacet_stretch(float alpha, float c)
     return sqrt(mix(c * c, 1.0, alpha * alpha));
 }
 
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
+// Reflectance at cosine c. A clear interface has its exact one between base and base + rise. Others follow a curve
 // (fresnel_curve), which has the exponent 5 unless a material says otherwise.
 color microfacet_fresnel(boolean clear, float ior, color base, color rise, color bend, color dip, float exponent,
                          float c)
 {
-    if (clear)
-        return base + rise * fresnel_dielectric(c, ior);
     float t = max(1.0 - c, 0.0);
     float t2 = t * t;
     float t4 = t2 * t2;
-    float climb = known(exponent == 5.0) ? t4 * t : pow(t, exponent);
-    return clamp(base + rise * climb + (bend + dip * t4) * (c * t2), 0.0, 1.0);
+    float climb = clear ? fresnel_dielectric(c, ior) : (exponent == 5.0 ? t4 * t : pow(t, exponent));
+    color F = base + rise * climb + (bend + dip * t4) * (c * t2);
+    return known(clear) ? F : clamp(F, 0.0, 1.0);
 }
 
-// Light that n visible normals mirror from the environment. Each weighs G2 / G1, and the sum is divided by the sum of
-// these weights and multiplied by the directional albedo: so a white furnace gains nothing at any n. After Turquin
-// 2019 the albedo is that of one bounce, E times the mean reflectance, and of all further ones, which lose what is
-// missing in E but for a further factor of mean reflectance. E, the share that a white surface mirrors in one bounce,
-// comes from the same samples.
-void microfacet_reflection(vector2 roughness, boolean retroreflective, boolean clear, float ior, color base, color rise,
-                           color bend, color dip, float exponent, vector N, vector V, vector X, output color radiance,
-                           output color albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+//
+// Mirrored light weighs G2 / G1, and the sum is divided by the sum of these weights and multiplied by the directional
+// albedo: so a white furnace gains nothing at any n. After Turquin 2019 the albedo is that of one bounce, E times the
+// mean reflectance, and of all further ones, which lose what is missing in E but for a further factor of mean
+// reflectance. E, the share that a white surface mirrors in one bounce, comes from the same samples.
+void microfacet_light(vector2 roughness, boolean refracts, boolean retroreflective, boolean clear, float ior, color base,
+                      color rise, color bend, color dip, float exponent, vector N, vector V, vector X,
+                      output color radiance, output color albedo)
 {
+    boolean isotropic = roughness.x == roughness.y;
     vector x = vector(0.0);
     vector y = vector(0.0);
     microfacet_frame(roughness, N, V, X, x, y);
     float NV = clamp(dot(N, V), 0.0001, 1.0);
     vector alpha = microfacet_alpha(roughness);
-    vector v = known(roughness.x == roughness.y) ? vector(sqrt(1.0 - NV * NV), 0.0, NV)
-                                                 : vector(dot(V, x), dot(V, y), NV);
+    vector v = known(isotropic) ? vector(sqrt(1.0 - NV * NV), 0.0, NV) : vector(dot(V, x), dot(V, y), NV);
     vector wide = alpha * v;
     float stretched = length(wide);
     vector s = wide / stretched;
-    float mean = known(roughness.x == roughness.y) ? alpha.x : sqrt(alpha.x * alpha.y);
-    float toView = known(roughness.x == roughness.y) ? stretched : microfacet_stretch(mean, NV);
+    float mean = known(isotropic) ? alpha.x : sqrt(alpha.x * alpha.y);
+    float toView = known(isotropic) ? stretched : microfacet_stretch(mean, NV);
     float count = environment_samples;
     float descent = (1.0 + s.z) / count;
     float reach = NV + stretched;
@@ -124,7 +124,7 @@ void microfacet_reflection(vector2 roughness, boolean retroreflective, boolean c
         y = -y;
     }
     matrix33 frame = matrix33(environment_matrix) * matrix33(x, y, N);
-    vector away = -v;
+    vector away = refracts ? v : -v;
     float total = 0.00000001;
     color light = color(0.0);
     color share = color(0.0);
@@ -133,9 +133,11 @@ void microfacet_reflection(vector2 roughness, boolean retroreflective, boolean c
         vector h = microfacet_cap(i, descent, s);
         vector slope = alpha * h;
         vector H = normalize(slope);
-        vector L = reflect(away, H);
+        // Through the sphere light turns as much at the far side as at the near one: it leaves where a mirror along its
+        // way inside would send the view.
+        vector L = reflect(away, refracts ? refract(-v, H, 1.0 / ior) : H);
         float NL = max(L.z, 0.0);
-        float weight = NL / (toView * NL + NV * microfacet_stretch(mean, NL));
+        float weight = refracts ? 1.0 : NL / (toView * NL + NV * microfacet_stretch(mean, NL));
         color F = weight * microfacet_fresnel(clear, ior, base, rise, bend, dip, exponent, dot(v, H));
         color seen = microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         total += weight;
@@ -144,48 +146,30 @@ void microfacet_reflection(vector2 roughness, boolean retroreflective, boolean c
     }
     float E = min(total * reach / count, 1.0);
     color once = share / total;
-    color all = mix(once, color(1.0), E);
     // What an anisotropic lobe throws below the horizon beyond what an isotropic one would is lost, as shadows are.
-    if (!known(roughness.x == roughness.y))
-    {
-        float white = microfacet_white(NV, mean);
-        all = mix(once, color(1.0), white) * min(E / white, 1.0);
-    }
+    float white = isotropic ? E : microfacet_white(NV, mean);
+    color all = refracts ? color(1.0) : mix(once, color(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
     radiance = light * (all / total);
     albedo = once * all;
 }
 
-// Light that n visible normals refract from the environment, through a solid sphere: in at the near side with the half
-// vector H, out at the far side, whose normal there is along dot(R, H) R - H / 2. What the surface mirrors instead is
-// not taken away here.
+void microfacet_reflection(vector2 roughness, boolean retroreflective, boolean clear, float ior, color base, color rise,
+                           color bend, color dip, float exponent, vector N, vector V, vector X, output color radiance,
+                           output color albedo)
+{
+    microfacet_light(roughness, false, retroreflective, clear, ior, base, rise, bend, dip, exponent, N, V, X, radiance,
+                     albedo);
+}
+
+// Light that comes through a solid sphere: in at the near side with the half vector H, along R inside, out at the far
+// side, whose normal there is 2 dot(R, H) R - H. What the surface mirrors instead is not taken away here.
 color microfacet_refraction(vector2 roughness, float ior, vector N, vector V, vector X)
 {
-    vector x = vector(0.0);
-    vector y = vector(0.0);
-    microfacet_frame(roughness, N, V, X, x, y);
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
-    vector alpha = microfacet_alpha(roughness);
-    vector v = known(roughness.x == roughness.y) ? vector(sqrt(1.0 - NV * NV), 0.0, NV)
-                                                 : vector(dot(V, x), dot(V, y), NV);
-    vector wide = alpha * v;
-    float stretched = length(wide);
-    vector s = wide / stretched;
-    float count = environment_samples;
-    float descent = (1.0 + s.z) / count;
-    float level = microfacet_level(alpha, NV + stretched);
-    matrix33 frame = matrix33(environment_matrix) * matrix33(x, y, N);
-    vector away = -v;
-    color radiance = color(0.0);
-    for (int i = 0; i < environment_samples; i++)
-    {
-        vector h = microfacet_cap(i, descent, s);
-        vector slope = alpha * h;
-        vector H = normalize(slope);
-        vector R = refract(away, H, 1.0 / ior);
-        vector out = refract(R, normalize(dot(R, H) * R - 0.5 * H), ior);
-        radiance += microfacet_lookup(frame * out, level, dot(slope, slope) / dot(h, h));
-    }
-    return radiance / max(count, 1.0);
+    color none = color(0.0);
+    color radiance = none;
+    color albedo = none;
+    microfacet_light(roughness, true, false, false, ior, color(1.0), none, none, none, 5.0, N, V, X, radiance, albedo);
+    return radiance;
 }
 
 // Density D of the half vector H under GGX. Where there is one roughness, the sine comes from a cross product: taken

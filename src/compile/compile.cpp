@@ -15,6 +15,8 @@
 #include "graph/graph.h"
 #include "ir/text.h"
 #include "ir/validate.h"
+#include "passes/expand.h"
+#include "passes/gather.h"
 #include "passes/place.h"
 #include "passes/prune.h"
 #include "passes/shade.h"
@@ -37,6 +39,13 @@ bool stageNamed(std::string_view name, StageName& stage) {
             return true;
         }
     return false;
+}
+
+bool interfaceNamed(std::string_view name, Interface& interface) {
+    if (name == "complete") interface = Interface::Complete;
+    if (name == "live") interface = Interface::Live;
+    if (name == "baked" || name == "reduced") interface = Interface::Baked;
+    return name == "complete" || name == "live" || name == "baked" || name == "reduced";
 }
 
 struct Compiler::State {
@@ -231,8 +240,15 @@ struct Compilation {
         std::string_view port = names.text(graph.outputs[0].name);
         bool isShader = ir::isClosure(graph.outputs[0].type);
         Name output = names.intern(isShader || port == "out" || port.empty() ? "out1" : port);
-        if (!passes::shade(module, pixel, output, diagnostics)) return false;
+        passes::ShadeOptions how;
+        how.skipsUnused = options.interface == Interface::Complete;
+        if (!passes::shade(module, pixel, output, how, diagnostics)) return false;
+        if (how.skipsUnused) {
+            passes::expandToLongWork(module, pixel);
+            passes::gather(module, pixel);
+        }
         if (!passes::specialise(module, pixel, {}, made, diagnostics)) return false;
+        passes::expandCalledOnce(module, pixel);
         passes::prune(module, std::array{pixel});
         dump(StageName::Shade);
         return true;

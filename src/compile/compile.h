@@ -35,6 +35,9 @@ namespace shaderx {
 
 using graph::Interface;
 
+// The interface of a name, "reduced" being another one for baked; false where there is none.
+bool interfaceNamed(std::string_view name, Interface& interface);
+
 // The stages of a compilation, in order; see docs/pipeline.md.
 enum class StageName : std::uint8_t { Read, Check, Graph, Lower, Specialise, Shade, Interface, Place, Legalise, Print };
 std::string_view nameOf(StageName stage);

@@ -193,9 +193,10 @@ struct Lowerer {
     }
 
     // Values that may change without a new shader: numbers, but for counts and choices that a nodedef says are fixed.
+    // A complete interface leaves nothing out.
     bool isLive(Type type, const Input* input, const Node* owner) const {
-        if (options.interface != Interface::Live || implemented || componentCount(type) == 0) return false;
-        if (!input || info(type).scalar == Scalar::Float) return true;
+        if (options.interface == Interface::Baked || implemented || componentCount(type) == 0) return false;
+        if (options.interface == Interface::Complete || !input || info(type).scalar == Scalar::Float) return true;
         return definitions.element(owner->def, *input->port).attributeText(uniformWord) != "true";
     }
 
@@ -281,20 +282,28 @@ struct Lowerer {
             ExprId value = geometricValue(property, owner.element);
             return fitted(value, input.source, input.type, owner.element);
         }
-        if (input.type == Type::Texture2D) return textureWithoutFile(input, owner);
-        return constantOf(b, input.type, element.attributeText(d.known().value));
+        std::string_view value = element.attributeText(d.known().value);
+        bool isComplete = options.interface == Interface::Complete && !implemented;
+        if (input.type == Type::Texture2D || (isComplete && componentCount(input.type)))
+            return unwritten(input, owner, value);
+        return constantOf(b, input.type, value);
     }
 
-    // A texture that no file was given for: a uniform that the host may set.
-    ExprId textureWithoutFile(const Input& input, const Node& owner) {
+    // A uniform for an input that the document does not write: the host may set it.
+    ExprId unwritten(const Input& input, const Node& owner, std::string_view value) {
         std::string_view name = d.text(input.port->name);
         Uniform u;
         u.name = freeName(fmt::format("{}_{}", d.text(d[owner.element].name), name));
-        u.type = Type::Texture2D;
+        u.type = input.type;
         u.path = fmt::format("{}/{}", d.path(owner.element), name);
-        readHints(u, owner);
+        if (u.type == Type::Texture2D)
+            readHints(u, owner);
+        else if (value.empty())
+            u.values.assign(static_cast<std::size_t>(componentCount(u.type)), 0);
+        else
+            u.values = wordsOf(u.type, value);
         module.uniforms.push_back(u);
-        return b.uniform(u.name, Type::Texture2D);
+        return b.uniform(u.name, u.type);
     }
 
     ExprId geometricValue(Name property, doc::ElementId at) {

@@ -10,8 +10,9 @@ namespace shaderx::graph {
 
 // Which values of a document become uniforms.
 enum class Interface : std::uint8_t {
-    Baked,  // none
-    Live,   // what the document authors on nodes or exposes on nodegraphs
+    Baked,     // none
+    Live,      // what the document authors on nodes or exposes on nodegraphs
+    Complete,  // every input of every node, authored or not
 };
 
 // Finds the function that implements a node. Its parameters are the nodedef's inputs in order, its results the outputs.
@@ -40,8 +41,9 @@ struct LowerOptions {
 // where `firstOutputOnly`). As the implementation of `implemented`, its parameters are that nodedef's inputs, and it is
 // expanded wherever it is called. Values become constants or uniforms named <node>_<input>, those of a nodegraph's
 // interface <nodegraph>_<input>; texture files always become uniforms, without any file being touched. Colours and
-// textures given in another colour space are transformed. Unconnected inputs take their nodedef's default value or
-// geometric property; a value in place of a geometric property is a warning. Values keep the names of their nodes.
+// textures given in another colour space are transformed. Unconnected inputs take their nodedef's default value (a
+// uniform too where the interface is complete) or geometric property; a value in place of a geometric property is a
+// warning. Values keep the names of their nodes.
 bool lower(const Graph& graph, const doc::Definitions& definitions, Bodies& bodies, doc::NodeDef implemented, Name name,
            const LowerOptions& options, ir::Module& module, Diagnostics& diagnostics);
 

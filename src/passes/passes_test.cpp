@@ -152,7 +152,7 @@ std::string outcome(const std::string& pass, Module& module, const Options& o, D
         return specialise(module, entry, baked, diagnostics) ? printReached(module, entry) : "";
     }
     if (pass == "shade")
-        return shade(module, entry, names.intern("out1"), diagnostics) ? printReached(module, entry) : "";
+        return shade(module, entry, names.intern("out1"), {}, diagnostics) ? printReached(module, entry) : "";
     if (pass == "prune") {
         prune(module, std::array{entry});
         return print(module);

@@ -83,11 +83,13 @@ struct Placer {
         for (std::uint32_t i = static_cast<std::uint32_t>(n); i-- > 0;)
             if (values[i].live && values[i].uses) schedule(ExprId(i));
         nameShared();
+        dropEmptyBranches();
         nameLong();
         nameOfQuads();
         emit();
     }
 
+    std::uint32_t loopAt(ExprId e) const { return loopOf.empty() ? kNoLoop : loopOf[e.index]; }
     bool isLoop(ExprId e) const { return f[e].op == Op::Loop || f[e].op == Op::Lights; }
 
     void markLive() {
@@ -100,7 +102,7 @@ struct Placer {
                 }
     }
 
-    // A loop counts as much work.
+    // Values that a loop around does not change are not counted; a loop counts as much work.
     void measureWork() {
         for (std::uint32_t i = 0; i < n; i++) {
             Value& v = values[i];
@@ -111,7 +113,8 @@ struct Placer {
             }
             int sum = isLoop(ExprId(i)) ? kMuchWork : 1;
             for (ExprId o : f.operandsOf(f.exprs[i]))
-                if (values[o.index].users <= 1 || f[o].op == Op::Result) sum += values[o.index].work;
+                if ((values[o.index].users <= 1 || f[o].op == Op::Result) && loopAt(o) == loopAt(ExprId(i)))
+                    sum += values[o.index].work;
             v.work = std::min(sum, 10000);
         }
     }
@@ -137,18 +140,17 @@ struct Placer {
     // The users of `e` are all placed: places it and tells its operands.
     void schedule(ExprId e) {
         const Expr& x = f[e];
-        std::uint32_t i = e.index, scope = hoisted(values[i].useScope, loopOf.empty() ? kNoLoop : loopOf[i]);
+        std::uint32_t i = e.index, scope = hoisted(values[i].useScope, loopAt(e));
         if (x.op == Op::Ddx || x.op == Op::Ddy) scope = 0;
         readsQuads = readsQuads || x.op == Op::Ddx || x.op == Op::Ddy || x.op == Op::TextureGrad;
         values[i].scope = scope;
         auto operands = f.operandsOf(e);
         if (isLoop(e)) {
-            values[i].body = open(scope, x.payload);
+            values[i].body = open(scope, isBranch(e) ? kNoLoop : x.payload);
             std::size_t carried = (operands.size() - (x.op == Op::Loop)) / 2, firstNext = operands.size() - carried;
             for (std::size_t k = 0; k < operands.size(); k++)
                 use(operands[k], k < firstNext ? scope : values[i].body, i);
-        } else if (x.op == Op::Select &&
-                   std::max(values[operands[1].index].work, values[operands[2].index].work) >= kMuchWork) {
+        } else if (x.op == Op::Select && (isMuch(operands[1], e) || isMuch(operands[2], e))) {
             const Branch& b = branchFor(e, scope);
             use(operands[0], scope, i);
             use(operands[1], b.then, i);
@@ -160,11 +162,22 @@ struct Placer {
         }
     }
 
+    bool isMuch(ExprId side, ExprId select) const {
+        return values[side.index].work >= kMuchWork && loopAt(side) == loopAt(select);
+    }
+
     bool readsImplicitly(ExprId e) const {
         if (!options.isEntry || f[e].op != Op::TextureGrad || values[e.index].scope != 0) return false;
         auto o = f.operandsOf(e);
         return f[o[2]].op == Op::Ddx && f.operand(o[2], 0) == o[1] && f[o[3]].op == Op::Ddy &&
                f.operand(o[3], 0) == o[1];
+    }
+
+    // A loop of at most one turn is a branch: what only it needs is not worth doing before it.
+    bool isBranch(ExprId loop) const {
+        if (f[loop].op != Op::Loop) return false;
+        ExprId count = f.operand(loop, 0);
+        return f[count].op == Op::Convert && f[f.operand(count, 0)].type == Type::Boolean;
     }
 
     // Out of every loop that the value does not change with.
@@ -210,6 +223,34 @@ struct Placer {
             if (values[i].body != kNone && f.exprs[i].op == Op::Loop)
                 if (ExprId count = f.operand(ExprId(i), 0); !isFree(f, count) && !isStatement(count.index))
                     values[count.index].named = true;
+    }
+
+    // A branch with nothing to compute on either side is an expression after all. Images keep the branch they are read
+    // in.
+    void dropEmptyBranches() {
+        if (branches.empty()) return;
+        std::vector<bool> isBusy(scopes.size());
+        for (std::uint32_t i = 0; i < n; i++)
+            if (values[i].live && values[i].uses && (values[i].named || values[i].body != kNone || f.exprs[i].op == Op::TextureGrad))
+                isBusy[values[i].scope] = true;
+        std::vector<std::uint32_t> now(scopes.size());
+        for (std::uint32_t s = 0; s < scopes.size(); s++) now[s] = s;
+        for (std::size_t k = branches.size(); k-- > 0;) {  // inner ones first
+            Branch& b = branches[k];
+            if (isBusy[b.then] || isBusy[b.otherwise]) {
+                isBusy[b.scope] = true;
+                continue;
+            }
+            now[b.then] = now[b.otherwise] = b.scope;
+            for (ExprId phi : b.phis) {
+                values[phi.index].branch = kNone;
+                values[phi.index].named = values[phi.index].uses > 1 || values[phi.index].scope != values[phi.index].useScope;
+                if (values[phi.index].named) isBusy[b.scope] = true;
+            }
+            b.phis.clear();
+        }
+        for (Value& v : values)
+            while (v.scope != kNone && now[v.scope] != v.scope) v.scope = now[v.scope];
     }
 
     // Characters in the text of a value that costs nothing to name again, roughly.
@@ -312,6 +353,7 @@ struct Placer {
                 all.push_back({i, {StmtKind::Let, ExprId(i), {}, {}, 0, 0}});
         }
         for (Branch& b : branches) {
+            if (b.phis.empty()) continue;
             std::sort(b.phis.begin(), b.phis.end());
             Stmt s{StmtKind::If,
                    b.condition,

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "passes/copy.h"
+#include "passes/gather.h"
 
 namespace shaderx::passes {
 
@@ -26,6 +27,7 @@ struct LeafLight {
 struct Shader {
     Module& module;
     const Function& from;
+    const ShadeOptions& options;
     Diagnostics& diagnostics;
     Function fresh{};
     Builder b{module, fresh};
@@ -33,6 +35,7 @@ struct Shader {
     std::vector<bool> live = reachable(from);
     std::vector<ExprId> throughput = std::vector<ExprId>(from.exprs.size());
     std::map<std::uint32_t, LeafLight> leaves{};
+    std::vector<ExprId> shares = std::vector<ExprId>(from.exprs.size());  // see share
     ExprId view{};
     bool ok = true, warnedVolume = false;
 
@@ -296,10 +299,52 @@ struct Shader {
             b.hint(light.radiance, hint);
             b.hint(light.albedo, name(fmt::format("{}_albedo", module.names->text(hint))));
         }
-        return leaves[id.index] = light;
+        return leaves[id.index] = ifUsed(id, light);
+    }
+
+    // Where a leaf's weight is certainly 0 its light and its albedo do not matter.
+    LeafLight ifUsed(ExprId id, LeafLight light) {
+        const Function* f = module.find(name(std::string(module.names->text(Name(from[id].payload))) + "_environment"));
+        if (!options.skipsUnused || !shares[id.index] || !f || !leadsTo(module, *f, holdsLoop)) return light;
+        ExprId isUsed = b.op(Op::NotEqual, {product(shares[id.index], weightOf(id)), b.number(0)});
+        if (Name hint = from.hints[id.index]) b.hint(isUsed, hint);
+        return {b.select(isUsed, light.radiance, black()), b.select(isUsed, light.albedo, black())};
+    }
+
+    // How much of each closure the root contains at most, as one number: all weights but what layers let through and
+    // what colours leave.
+    void share(ExprId root) {
+        auto give = [&](ExprId to, ExprId x) {
+            ExprId& sum = shares[to.index];
+            sum = sum ? b.op(Op::Add, {sum, x}) : x;
+        };
+        shares.assign(from.exprs.size(), {});
+        shares[root.index] = one();
+        for (std::uint32_t i = root.index + 1; i-- > 0;) {
+            if (ExprId w = shares[i]; w && isClosure(from.exprs[i].type)) {
+                auto o = from.operandsOf(from.exprs[i]);
+                switch (from.exprs[i].op) {
+                    case Op::ClosureMix:
+                        give(o[0], product(w, b.op(Op::Sub, {one(), copy[o[2]]})));
+                        give(o[1], product(w, copy[o[2]]));
+                        break;
+                    case Op::ClosureAdd:
+                    case Op::ClosureLayer:
+                        give(o[0], w);
+                        give(o[1], w);
+                        break;
+                    case Op::ClosureScale:
+                        give(o[0], b.type(copy[o[1]]) == Type::Float ? product(w, copy[o[1]]) : w);
+                        break;
+                    default:
+                        break;  // leaves keep what they have
+                }
+            }
+        }
     }
 
     ExprId environment(ExprId bsdf) {
+        if (options.skipsUnused) share(bsdf);
         std::vector<ExprId> w = weigh(bsdf, Type::BSDF);
         // From the outermost lobe inwards. Lobes that differ only in weight are one.
         std::vector<std::pair<ExprId, ExprId>> lobes;  // radiance and weight
@@ -339,10 +384,10 @@ struct Shader {
 
 }  // namespace
 
-bool shade(Module& module, Name entry, Name output, Diagnostics& diagnostics) {
+bool shade(Module& module, Name entry, Name output, const ShadeOptions& options, Diagnostics& diagnostics) {
     Function* f = module.findOwn(entry);
     ensure(f && f->results.size() == 1, "an entry has one result");
-    Shader s{module, *f, diagnostics};
+    Shader s{module, *f, options, diagnostics};
     s.run(output);
     bool ok = s.ok;
     module.put(std::move(s.fresh));

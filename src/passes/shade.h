@@ -6,6 +6,12 @@
 
 namespace shaderx::passes {
 
+struct ShadeOptions {
+    // What a leaf's function gives counts as needed only where the leaf's weight is not 0, if the function leads to a
+    // loop: a select says so, whose condition is called as the leaf is (see gather.h).
+    bool skipsUnused = false;
+};
+
 // Rewrites the module's function `entry`, whose one result is a surface shader, a closure or a value, into the function
 // of a pixel: its one result is a vector4 named `output`, linear radiance and alpha.
 //
@@ -21,6 +27,6 @@ namespace shaderx::passes {
 //
 // Values become colours: float, integer and boolean (v, v, v, 1), vector2 (v, 0, 1), three components (v, 1), four as
 // they are, matrices (0, 0, 0, 1).
-bool shade(ir::Module& module, Name entry, Name output, Diagnostics& diagnostics);
+bool shade(ir::Module& module, Name entry, Name output, const ShadeOptions& options, Diagnostics& diagnostics);
 
 }  // namespace shaderx::passes

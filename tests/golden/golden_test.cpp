@@ -66,7 +66,7 @@ class Golden : public testing::TestWithParam<fs::path> {
 
     void check(const doc::Document& document, doc::ElementId element, const std::string& interface) {
         GenerateOptions how;
-        how.interface = interface == "baked" ? Interface::Baked : Interface::Live;
+        ASSERT_TRUE(interfaceNamed(interface, how.interface)) << interface;
         Diagnostics diagnostics;
         Result<Shader> shader = compiler_.generate(document, element, how, diagnostics);
         ASSERT_TRUE(shader) << diagnostics.text();

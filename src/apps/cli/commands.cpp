@@ -102,8 +102,7 @@ struct Session {
 
     GenerateOptions how() {
         GenerateOptions how;
-        how.interface =
-            options.interface == "baked" || options.interface == "reduced" ? Interface::Baked : Interface::Live;
+        interfaceNamed(options.interface, how.interface);
         how.dumps = &dumps;
         return how;
     }

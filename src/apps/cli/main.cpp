@@ -20,8 +20,10 @@ void common(CLI::App& command, Options& o) {
 void shading(CLI::App& command, Options& o) {
     command.add_option("--element", o.element,
                        "the element to compile, by its path; default: all that can be rendered");
-    command.add_option("--interface", o.interface, "live: authored values are uniforms; baked: none are")
-        ->check(CLI::IsMember({"live", "baked", "reduced"}));
+    command
+        .add_option("--interface", o.interface,
+                    "complete: all values are uniforms; live: authored ones are; baked: none")
+        ->check(CLI::IsMember({"complete", "live", "baked", "reduced"}));
     command.add_option("--dump", o.dump,
                        "print the program after a stage: read, check, graph, lower, specialise, shade, interface, "
                        "place, legalise, print");

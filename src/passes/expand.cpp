@@ -1,0 +1,132 @@
+#include "passes/expand.h"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "base/diagnostics.h"
+#include "passes/copy.h"
+#include "passes/gather.h"
+
+namespace shaderx::passes {
+
+using namespace ir;
+
+namespace {
+
+constexpr int kMaxDepth = 64;       // of calls in calls
+constexpr std::size_t kShort = 24;  // operations up to which a function that is called once is short
+
+// The results of an expanded call, and how many expressions there were before it.
+struct Expanded {
+    std::uint32_t before = 0;
+    std::vector<ExprId> results;
+};
+
+struct Expander {
+    Module& module;
+    std::function<bool(const Function&)> isWanted;
+    int depth = 0;
+
+    // The function anew, with every call of a wanted function expanded.
+    void rewrite(Name name) {
+        const Function* old = module.findOwn(name);
+        ensure(old, "no function to expand in");
+        Function fresh;
+        fresh.name = name;
+        fresh.params = old->params;
+        fresh.comment = old->comment;
+        fresh.isInline = old->isInline;
+        Builder b(module, fresh);
+        std::vector<ExprId> arguments;
+        for (std::uint32_t i = 0; i < fresh.params.size(); i++) arguments.push_back(b.param(i));
+        std::vector<ExprId> results = expand(*old, b, arguments);
+        for (std::size_t i = 0; i < results.size(); i++) b.addResult(old->results[i].name, results[i]);
+        module.put(std::move(fresh));
+    }
+
+    // Copies a function's expressions to where `b` builds, with arguments for parameters; the results.
+    std::vector<ExprId> expand(const Function& from, Builder& b, std::span<const ExprId> arguments) {
+        Copy copy(from, b);
+        std::vector<bool> live = reachable(from);
+        std::map<std::uint32_t, Expanded> calls;  // by source expression
+        for (std::uint32_t i = 0; i < from.exprs.size(); i++) {
+            if (!live[i]) continue;
+            ExprId id(i);
+            const Expr& e = from.exprs[i];
+            const Function* callee = e.op == Op::Call ? module.find(Name(e.payload)) : nullptr;
+            if (e.op == Op::Param) {
+                copy.set(id, arguments[e.payload]);
+            } else if (callee && depth < kMaxDepth && isWanted(*callee)) {
+                auto operands = copy.operands(id);
+                std::vector<ExprId> given(operands.begin(), operands.end());
+                Expanded& made = calls[i];
+                made.before = static_cast<std::uint32_t>(b.function().exprs.size());
+                depth++;
+                made.results = expand(*callee, b, given);
+                depth--;
+                if (e.type != Type::Tuple) take(b, copy, id, made, 0, from.hints[i]);
+            } else if (e.op == Op::Result && calls.count(from.operand(id, 0).index)) {
+                take(b, copy, id, calls[from.operand(id, 0).index], e.payload, from.hints[i]);
+            } else {
+                copy.one(id);
+            }
+        }
+        std::vector<ExprId> results;
+        for (const ResultValue& r : from.results) results.push_back(copy[r.value]);
+        return results;
+    }
+
+    // A name that the caller gives to a result goes before the one that the value has inside the function called,
+    // unless the value is older than the call.
+    static void take(Builder& b, Copy& copy, ExprId id, const Expanded& call, std::uint32_t k, Name hint) {
+        ExprId value = call.results[k];
+        copy.set(id, value);
+        if (hint && value.index >= call.before)
+            b.rename(value, hint);
+        else if (hint)
+            b.hint(value, hint);
+    }
+};
+
+bool isLong(const Function& f) { return holdsLoop(f) || readsImage(f); }
+
+bool isShort(const Function& f) {
+    if (isLong(f)) return false;
+    std::vector<bool> live = reachable(f);
+    std::size_t operations = 0;
+    for (std::size_t i = 0; i < f.exprs.size(); i++) {
+        Op op = f.exprs[i].op;
+        operations += live[i] && op > Op::Uniform && op != Op::Swizzle && op != Op::Retype && op != Op::Result;
+    }
+    return operations <= kShort;
+}
+
+}  // namespace
+
+void expandToLongWork(Module& module, Name entry) {
+    Expander{module, [&](const Function& f) { return !isLong(f) && leadsTo(module, f, isLong); }}.rewrite(entry);
+}
+
+void expandCalledOnce(Module& module, Name entry) {
+    std::vector<Name> reached{entry};
+    std::unordered_map<Name, int> calls;
+    for (std::size_t i = 0; i < reached.size(); i++) {
+        const Function& f = *module.findOwn(reached[i]);
+        std::vector<bool> live = reachable(f);
+        for (std::size_t k = 0; k < f.exprs.size(); k++)
+            if (Name callee(f.exprs[k].payload); live[k] && f.exprs[k].op == Op::Call && calls[callee]++ == 0)
+                reached.push_back(callee);
+    }
+    std::unordered_set<Name> once;
+    for (auto [name, count] : calls)
+        if (count == 1 && isShort(*module.findOwn(name))) once.insert(name);
+    if (once.empty()) return;
+    Expander expander{module, [&](const Function& f) { return once.count(f.name) > 0; }};
+    for (Name name : reached)
+        if (!once.count(name)) expander.rewrite(name);
+}
+
+}  // namespace shaderx::passes
