@@ -482,17 +482,13 @@ struct Gatherer {
 }  // namespace
 
 bool holdsLoop(const Function& f) {
-    std::vector<bool> live = reachable(f);
-    for (std::size_t i = 0; i < f.exprs.size(); i++)
-        if (live[i] && (f.exprs[i].op == Op::Loop || f.exprs[i].op == Op::Lights)) return true;
-    return false;
+    return std::any_of(f.exprs.begin(), f.exprs.end(),
+                       [](const Expr& e) { return e.op == Op::Loop || e.op == Op::Lights; });
 }
 
 bool readsImage(const Function& f) {
-    std::vector<bool> live = reachable(f);
-    for (std::size_t i = 0; i < f.exprs.size(); i++)
-        if (live[i] && (f.exprs[i].op == Op::TextureLevel || f.exprs[i].op == Op::TextureGrad)) return true;
-    return false;
+    return std::any_of(f.exprs.begin(), f.exprs.end(),
+                       [](const Expr& e) { return e.op == Op::TextureLevel || e.op == Op::TextureGrad; });
 }
 
 bool leadsTo(const Module& module, const Function& f, bool (*what)(const Function&)) {

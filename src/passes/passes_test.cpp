@@ -4,6 +4,7 @@
 //     #! entry NAME      the entry, else "main"
 //     #! baked NAME...   specialise: uniforms to bake
 //     #! isEntry         place: as an entry; the functions are placed as they are otherwise
+//     #! skipsUnused     shade: says where long functions are needed
 //     #! longest NUMBER  place: the longest text of an expression
 //     #! invalid         the program breaks the rules of the IR before the pass
 #include <algorithm>
@@ -17,6 +18,8 @@
 #include "ir/builder.h"
 #include "ir/text.h"
 #include "ir/validate.h"
+#include "passes/expand.h"
+#include "passes/gather.h"
 #include "passes/place.h"
 #include "passes/prune.h"
 #include "passes/shade.h"
@@ -42,6 +45,7 @@ struct Options {
     std::string entry = "main";
     std::vector<std::string> baked;
     PlaceOptions place;
+    ShadeOptions shade;
     bool invalid = false;
 };
 
@@ -56,6 +60,8 @@ Options optionsOf(const std::string& text) {
             words >> o.entry;
         else if (word == "isEntry")
             o.place.isEntry = true;
+        else if (word == "skipsUnused")
+            o.shade.skipsUnused = true;
         else if (word == "longest")
             words >> o.place.longestText;
         else if (word == "invalid")
@@ -152,7 +158,11 @@ std::string outcome(const std::string& pass, Module& module, const Options& o, D
         return specialise(module, entry, baked, diagnostics) ? printReached(module, entry) : "";
     }
     if (pass == "shade")
-        return shade(module, entry, names.intern("out1"), {}, diagnostics) ? printReached(module, entry) : "";
+        return shade(module, entry, names.intern("out1"), o.shade, diagnostics) ? printReached(module, entry) : "";
+    if (pass == "gather" || pass == "expand_to_long_work" || pass == "expand_called_once") {
+        (pass == "gather" ? gather : pass == "expand_called_once" ? expandCalledOnce : expandToLongWork)(module, entry);
+        return printReached(module, entry);
+    }
     if (pass == "prune") {
         prune(module, std::array{entry});
         return print(module);

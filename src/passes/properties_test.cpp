@@ -6,6 +6,8 @@
 
 #include "ir/text.h"
 #include "ir/validate.h"
+#include "passes/expand.h"
+#include "passes/gather.h"
 #include "passes/place.h"
 #include "passes/prune.h"
 #include "passes/random_programs.h"
@@ -97,6 +99,12 @@ struct Trial {
             EXPECT_TRUE(specialise(module, entry, baked, diagnostics)) << diagnostics.text();
         }
         if (!check("specialise of all uniforms")) return false;
+        if (seed % 2 == 0) expandToLongWork(module, entry);
+        if (!check("expansion to long work")) return false;
+        gather(module, entry);
+        if (!check("gather")) return false;
+        expandCalledOnce(module, entry);
+        if (!check("expansion of what is called once")) return false;
         PlaceOptions how;
         how.longestText = seed % 5 ? 90 : 30;
         for (auto& f : module.functions) place(*f, how);

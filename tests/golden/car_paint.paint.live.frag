@@ -32,8 +32,7 @@ in VertexData
 
 out vec4 out1;
 
-// GGX roughness along and across the tangent: a lobe stretched by the anisotropy keeps its roughness as the geometric
-// mean.
+// GGX roughness along and across the tangent.
 vec2 roughness_anisotropy(float roughness, float anisotropy)
 {
     float alpha = roughness * roughness;
@@ -50,25 +49,13 @@ vec3 rotate_about(vec3 v, float degrees2, vec3 axis)
     return v * cosine + cross(v, a) * sin(angle) + a * (dot(v, a) * (1.0 - cosine));
 }
 
-// The complex index of refraction of a metal from its colour face on and at the edge (O. Gulbrandsen, Artist Friendly
-// Metallic Fresnel, JCGT 2014, equations 5 and 6).
-vec3 artistic_ior(vec3 reflectivity, out vec3 extinction)
-{
-    vec3 r = clamp(reflectivity, 0.0, 0.99);
-    vec3 v = 1.0 - r;
-    vec3 n = v / (r + 1.0);
-    vec3 above = n + 1.0;
-    vec3 below = n - 1.0;
-    extinction = sqrt(max((r * (above * above) - below * below) / v, 0.0));
-    return n;
-}
-
 // The frame in which roughness is given.
-vec3 microfacet_frame(vec3 N, vec3 X, out vec3 y)
+vec3 microfacet_frame(vec2 roughness, vec3 N, vec3 V, vec3 X, out vec3 y)
 {
-    vec3 tangent = X - N * dot(N, X);
+    vec3 tangent = roughness.x == roughness.y ? V : X;
+    vec3 tangent2 = tangent - N * dot(N, tangent);
     vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    vec3 x = normalize(dot(tangent2, tangent2) < 1e-08 ? cross(N, other) : tangent2);
     y = cross(N, x);
     return x;
 }
@@ -80,23 +67,13 @@ float microfacet_level(vec3 alpha, float reach)
     return float(u_envRadianceMips) - 2.5 - x;
 }
 
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+// Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
 vec3 microfacet_cap(int i, float descent, vec3 s)
 {
     float k = float(i);
     float azimuth = 2.3999631 * k;
     float z = 1.0 - descent * (k + 0.5);
     return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
-float fresnel_dielectric(float c)
-{
-    float u = sqrt(max(c * c + 1.25, 0.0));
-    float p = u / 2.25;
-    float rs = (c - u) / (c + u);
-    float rp = (c - p) / (c + p);
-    return 0.5 * (rs * rs + rp * rp);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -122,11 +99,12 @@ float microfacet_white(float NV, float alpha)
     return clamp(1.0 - scale * (NV * (0.0677313 - 0.519049 * NV) + 0.179275 + x), 0.01, 1.0);
 }
 
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(vec2 roughness, vec3 N, vec3 V, vec3 X, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(vec2 roughness, vec3 N, vec3 V, vec3 X, out vec3 albedo)
 {
+    bool isotropic = roughness.x == roughness.y;
     vec3 y;
-    vec3 x = microfacet_frame(N, X, y);
+    vec3 x = microfacet_frame(roughness, N, V, X, y);
     float NV = clamp(dot(N, V), 0.0001, 1.0);
     float x2 = clamp(roughness.x, 0.0001, 1.0);
     float x3 = clamp(roughness.y, 0.0001, 1.0);
@@ -154,86 +132,45 @@ vec3 microfacet_reflection(vec2 roughness, vec3 N, vec3 V, vec3 X, out vec3 albe
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (toView * NL + NV * sqrt(mix(NL * NL, 1.0, x4)));
-        float F = weight * fresnel_dielectric(dot(v, H));
+        float x5 = dot(v, H);
+        float u = sqrt(max(x5 * x5 + 1.25, 0.0));
+        float p = u / 2.25;
+        float rs = (x5 - u) / (x5 + u);
+        float rp = (x5 - p) / (x5 + p);
+        float F = weight * (0.5 * (rs * rs + rp * rp));
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
     }
+    float E = min(reach * total / count, 1.0);
     vec3 once = share / total;
-    float white = microfacet_white(NV, mean);
-    float x5 = min(min(reach * total / count, 1.0) / white, 1.0);
-    vec3 all2 = mix(once, vec3(1.0), white) * x5;
+    float white = isotropic ? E : microfacet_white(NV, mean);
+    vec3 all2 = mix(once, vec3(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
     albedo = once * all2;
     return light * (all2 / total);
 }
 
-// Reflectance at an interface of admittance u + iw.
-vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
-{
-    vec3 v = c - u;
-    vec3 v2 = w * w;
-    vec3 v3 = c + u;
-    return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
-}
-
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
-vec3 fresnel_admittance(float c, vec3 n, vec3 k, out vec3 w)
-{
-    vec3 t = n * n - k * k - (1.0 - c * c);
-    vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
-    w = sqrt(max(0.5 * (m - t), 0.0));
-    return sqrt(max(0.5 * (t + m), 0.0));
-}
-
-// The same for p-polarised light: the admittance divided by (n + ik)^2.
-vec3 fresnel_admittance_p(vec3 n, vec3 k, vec3 u, vec3 w, out vec3 wp)
-{
-    vec3 re = n * n - k * k;
-    vec3 im = k * (2.0 * n);
-    vec3 scale = 1.0 / max(re * re + im * im, 1e-12);
-    wp = scale * (w * re - u * im);
-    return scale * (u * re + w * im);
-}
-
-// Reflectance of a conductor of index n + ik for unpolarised light; exact.
+// Reflectance of a conductor of index n + ik for unpolarised light; exact, for c above 0. Written out, the squares of
+// the amplitudes for p- and s-polarised light have a ratio that needs no further root.
 vec3 fresnel_conductor(float c, vec3 n, vec3 k)
 {
-    vec3 w;
-    vec3 u = fresnel_admittance(c, n, k, w);
-    vec3 wp;
-    vec3 up = fresnel_admittance_p(n, k, u, w, wp);
-    vec3 v = fresnel_reflectance(c, u, w);
-    return 0.5 * (v + fresnel_reflectance(c, up, wp));
+    float c2 = c * c;
+    float s2 = 1.0 - c2;
+    vec3 t = n * n - k * k - s2;
+    vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
+    vec3 a = 2.0 * c * sqrt(max(0.5 * (t + m), 0.0));
+    vec3 b = c2 + m;
+    vec3 d = c2 * m + s2 * s2;
+    vec3 v = s2 * a;
+    return 0.5 * ((b - a) / (a + b)) * ((d - v) / (d + v) + 1.0);
 }
 
-// A conductor's reflectance as a curve that costs little per half vector: with x = 1 - c, F = base + rise x^5 + c x^2
-// (bend + dip x^4).
-vec3 fresnel_curve(vec3 F0, vec3 F60, vec3 F82, out vec3 bend, out vec3 dip)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light2(vec2 roughness, vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V, vec3 X)
 {
-    vec3 rise = 1.0 - F0;
-    vec3 more60 = F60 - F0 - 0.03125 * rise;
-    vec3 more82 = F82 - F0 - 0.46266437 * rise;
-    bend = 9.047614 * more60 - 1.247679 * more82;
-    dip = 19.962864 * more82 - 16.761822 * more60;
-    return rise;
-}
-
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel(vec3 base, vec3 rise, vec3 bend, vec3 dip, float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    float t4 = t2 * t2;
-    return clamp(base + rise * (t * t4) + (bend + dip * t4) * (c * t2), 0.0, 1.0);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection2(vec2 roughness, vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V, vec3 X)
-{
+    bool isotropic = roughness.x == roughness.y;
     vec3 y;
-    vec3 x = microfacet_frame(N, X, y);
+    vec3 x = microfacet_frame(roughness, N, V, X, y);
     float NV = clamp(dot(N, V), 0.0001, 1.0);
     float x2 = clamp(roughness.x, 0.0001, 1.0);
     float x3 = clamp(roughness.y, 0.0001, 1.0);
@@ -261,15 +198,19 @@ vec3 microfacet_reflection2(vec2 roughness, vec3 base, vec3 rise, vec3 bend, vec
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (toView * NL + NV * sqrt(mix(NL * NL, 1.0, x4)));
-        vec3 F = weight * microfacet_fresnel(base, rise, bend, dip, dot(v, H));
+        float x5 = dot(v, H);
+        float t = max(1.0 - x5, 0.0);
+        float t2 = t * t;
+        float t4 = t2 * t2;
+        vec3 F = weight * clamp(base + rise * (t * t4) + (bend + dip * t4) * (x5 * t2), 0.0, 1.0);
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
     }
-    float white = microfacet_white(NV, mean);
+    float E = min(reach * total / count, 1.0);
+    float white = isotropic ? E : microfacet_white(NV, mean);
     vec3 v2 = mix(share / total, vec3(1.0), white);
-    vec3 v3 = v2 * min(min(reach * total / count, 1.0) / white, 1.0) / total;
-    return light * v3;
+    return light * (v2 * (isotropic ? 1.0 : min(E / white, 1.0)) / total);
 }
 
 void main()
@@ -279,8 +220,13 @@ void main()
     vec2 coat_alpha = roughness_anisotropy(paint_shader_coat_roughness, paint_shader_coat_anisotropy);
     vec3 coat_turned_unit = normalize(rotate_about(v, 360.0 * paint_shader_coat_rotation, normal));
     vec3 coat_tangent = 0.0 < paint_shader_coat_anisotropy ? coat_turned_unit : v;
-    vec3 metal_index_extinction;
-    vec3 metal_index_ior = artistic_ior(paint_shader_base * paint_shader_base_color, metal_index_extinction);
+    vec3 r = clamp(paint_shader_base * paint_shader_base_color, 0.0, 0.99);
+    vec3 v2 = 1.0 - r;
+    vec3 metal_index_ior = v2 / (r + 1.0);
+    vec3 above = metal_index_ior + 1.0;
+    vec3 below = metal_index_ior - 1.0;
+    vec3 v3 = above * above;
+    vec3 metal_index_extinction = sqrt(max((r * v3 - below * below) / v2, 0.0));
     float coat_blur = paint_shader_coat_roughness * (paint_shader_coat * paint_shader_coat_affect_roughness);
     float specular_blurred = mix(paint_shader_specular_roughness, 1.0, coat_blur);
     vec2 specular_alpha = roughness_anisotropy(specular_blurred, paint_shader_specular_anisotropy);
@@ -290,19 +236,24 @@ void main()
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
     vec3 coat_lobe_albedo;
-    vec3 coat_lobe = microfacet_reflection(coat_alpha, N, V, coat_tangent, coat_lobe_albedo);
-    vec3 v2 = coat_tint * (1.0 - paint_shader_coat * coat_lobe_albedo);
-    vec3 v3 = v2 * (1.0 - paint_shader_metalness);
+    vec3 coat_lobe = microfacet_light(coat_alpha, N, V, coat_tangent, coat_lobe_albedo);
+    vec3 v4 = coat_tint * (1.0 - paint_shader_coat * coat_lobe_albedo);
+    vec3 v5 = v4 * (1.0 - paint_shader_metalness);
     vec3 specular_lobe_albedo;
-    vec3 specular_lobe = microfacet_reflection(specular_alpha, N, V, specular_tangent, specular_lobe_albedo);
-    vec3 v4 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    vec3 base = fresnel_reflectance(1.0, metal_index_ior, metal_index_extinction);
-    vec3 F60 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction);
-    vec3 bend;
-    vec3 dip;
-    vec3 rise = fresnel_curve(base, F60, fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction), bend, dip);
-    vec3 metal = microfacet_reflection2(specular_alpha, base, rise, bend, dip, N, V, specular_tangent);
-    vec3 v5 = paint_shader_base * (v3 * (1.0 - specular_lobe_albedo)) * (max(paint_shader_base_color, 0.0) * v4);
-    vec3 v6 = v5 + v3 * specular_lobe + paint_shader_metalness * v2 * metal;
-    out1 = vec4((v6 + paint_shader_coat * coat_lobe) * u_envLightIntensity, 1.0);
+    vec3 specular_lobe = microfacet_light(specular_alpha, N, V, specular_tangent, specular_lobe_albedo);
+    vec3 v6 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    vec3 v7 = 1.0 - metal_index_ior;
+    vec3 v8 = metal_index_extinction * metal_index_extinction;
+    vec3 base = (v7 * v7 + v8) / max(v3 + v8, 1e-12);
+    vec3 rise = 1.0 - base;
+    vec3 v9 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction) - base;
+    vec3 more60 = v9 - 0.03125 * rise;
+    vec3 v10 = fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction) - base;
+    vec3 more82 = v10 - 0.46266437 * rise;
+    vec3 bend = 9.047614 * more60 - 1.247679 * more82;
+    vec3 dip = 19.962864 * more82 - 16.761822 * more60;
+    vec3 metal = microfacet_light2(specular_alpha, base, rise, bend, dip, N, V, specular_tangent);
+    vec3 v11 = paint_shader_base * (v5 * (1.0 - specular_lobe_albedo)) * (max(paint_shader_base_color, 0.0) * v6);
+    vec3 v12 = v11 + v5 * specular_lobe + paint_shader_metalness * v4 * metal;
+    out1 = vec4((v12 + paint_shader_coat * coat_lobe) * u_envLightIntensity, 1.0);
 }

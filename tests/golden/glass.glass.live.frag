@@ -39,24 +39,13 @@ float microfacet_level(vec3 alpha, float reach)
     return float(u_envRadianceMips) - 2.5 - x;
 }
 
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+// Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
 vec3 microfacet_cap(int i, float descent, vec3 s)
 {
     float k = float(i);
     float azimuth = 2.3999631 * k;
     float z = 1.0 - descent * (k + 0.5);
     return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
-float fresnel_dielectric(float c, float ior)
-{
-    float n2 = max(ior * ior, 0.0001);
-    float u = sqrt(max(n2 - 1.0 + c * c, 0.0));
-    float p = u / n2;
-    float rs = (c - u) / (c + u);
-    float rp = (c - p) / (c + p);
-    return 0.5 * (rs * rs + rp * rp);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -74,8 +63,8 @@ vec3 microfacet_lookup(vec3 d, float level, float ratio)
     return environment_lookup(u_envRadiance, d, level2);
 }
 
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(float roughness, float ior, vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albedo)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -92,6 +81,8 @@ vec3 microfacet_reflection(float roughness, float ior, vec3 N, vec3 V, out vec3 
     float reach = NV + stretched;
     float level = microfacet_level(alpha, reach);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float n2 = max(ior * ior, 0.0001);
+    float x3 = n2 - 1.0;
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
@@ -103,7 +94,12 @@ vec3 microfacet_reflection(float roughness, float ior, vec3 N, vec3 V, out vec3 
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
-        float F = weight * fresnel_dielectric(dot(v, H), ior);
+        float x4 = dot(v, H);
+        float u = sqrt(max(x3 + x4 * x4, 0.0));
+        float p = u / n2;
+        float rs = (x4 - u) / (x4 + u);
+        float rp = (x4 - p) / (x4 + p);
+        float F = weight * (0.5 * (rs * rs + rp * rp));
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -114,10 +110,8 @@ vec3 microfacet_reflection(float roughness, float ior, vec3 N, vec3 V, out vec3 
     return light * (all2 / total);
 }
 
-// Light that n visible normals refract from the environment, through a solid sphere: in at the near side with the
-// half vector H, out at the far side, whose normal there is along dot(R, H) R - H / 2. What the surface mirrors
-// instead is not taken away here.
-vec3 microfacet_refraction(float roughness, float ior, vec3 N, vec3 V)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light2(float roughness, float ior, vec3 N, vec3 V)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -128,22 +122,23 @@ vec3 microfacet_refraction(float roughness, float ior, vec3 N, vec3 V)
     vec3 wide = alpha * v;
     float stretched = length(wide);
     vec3 s = wide / stretched;
-    float count = float(u_envRadianceSamples);
-    float descent = (s.z + 1.0) / count;
+    float descent = (s.z + 1.0) / float(u_envRadianceSamples);
     float level = microfacet_level(alpha, NV + stretched);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
     float x3 = 1.0 / ior;
-    vec3 radiance = vec3(0.0);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
         vec3 h = microfacet_cap(i, descent, s);
         vec3 slope = alpha * h;
-        vec3 H = normalize(slope);
-        vec3 R = refract(-v, H, x3);
-        vec3 d = frame * refract(R, normalize(R * dot(H, R) - 0.5 * H), ior);
-        radiance += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+        vec3 d = frame * reflect(v, refract(-v, normalize(slope), x3));
+        total += 1.0;
+        light += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+        share += 1.0;
     }
-    return radiance / max(count, 1.0);
+    return light * (1.0 / total);
 }
 
 void main()
@@ -155,8 +150,8 @@ void main()
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
     vec3 specular_lobe_albedo;
-    vec3 specular_lobe = microfacet_reflection(alpha, glass_shader_specular_IOR, N, V, specular_lobe_albedo);
-    vec3 inside = u_refractionTwoSided ? glass_shader_transmission_color * glass_shader_transmission_color : glass_shader_transmission_color;
-    vec3 transmitted = inside * microfacet_refraction(alpha2, glass_shader_specular_IOR, N, V);
-    out1 = vec4((specular_lobe + (1.0 - specular_lobe_albedo) * transmitted) * u_envLightIntensity, 1.0);
+    vec3 specular_lobe = microfacet_light(alpha, glass_shader_specular_IOR, N, V, specular_lobe_albedo);
+    vec3 radiance = microfacet_light2(alpha2, glass_shader_specular_IOR, N, V);
+    vec3 v = (1.0 - specular_lobe_albedo) * ((u_refractionTwoSided ? glass_shader_transmission_color * glass_shader_transmission_color : glass_shader_transmission_color) * radiance);
+    out1 = vec4((specular_lobe + v) * u_envLightIntensity, 1.0);
 }

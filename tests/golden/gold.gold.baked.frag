@@ -17,44 +17,6 @@ in VertexData
 
 out vec4 out1;
 
-// The frame in which roughness is given.
-vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
-{
-    vec3 tangent = V - N * dot(N, V);
-    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
-    y = cross(N, x);
-    return x;
-}
-
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level(float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (1.0053096e-06 * reach));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
-vec3 microfacet_cap(int i, float descent, vec3 s)
-{
-    float k = float(i);
-    float azimuth = 2.3999631 * k;
-    float z = 1.0 - descent * (k + 0.5);
-    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel(float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    float t4 = t2 * t2;
-    vec3 v = (vec3(-0.15986387, 0.0390462, -0.40858728) * t4 + vec3(-0.04354117, -0.026530916, 0.18614186)) * (c * t2);
-    vec3 v2 = vec3(0.055999994, 0.22399998, 0.62700003) * (t * t4) + vec3(0.944, 0.776, 0.37299997) + v;
-    return clamp(v2, 0.0, 1.0);
-}
-
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
 vec3 environment_lookup(sampler2D map, vec3 d, float level)
 {
@@ -62,20 +24,14 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
     return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
 }
 
-// Light from the direction d of the map, at the level for its sample.
-vec3 microfacet_lookup(vec3 d, float level, float ratio)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(vec3 N, vec3 V)
 {
-    float r2 = ratio * ratio;
-    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
-    return environment_lookup(u_envRadiance, d, level2);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(vec3 N, vec3 V)
-{
-    vec3 y;
-    vec3 x = microfacet_frame(N, V, y);
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float x = dot(N, V);
+    vec3 tangent = V - N * x;
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    float NV = clamp(x, 0.0001, 1.0);
     vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
     vec3 wide = vec3(0.0004, 0.0004, 1.0) * v;
     float stretched = length(wide);
@@ -83,23 +39,36 @@ vec3 microfacet_reflection(vec3 N, vec3 V)
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level(reach);
-    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (1.0053096e-06 * reach));
+    mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        float k = float(i);
+        float azimuth = 2.3999631 * k;
+        float z = 1.0 - descent * (k + 0.5);
+        vec3 h = s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
         vec3 slope = vec3(0.0004, 0.0004, 1.0) * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 1.5999998e-07)));
-        vec3 F = weight * microfacet_fresnel(dot(v, H));
+        float x3 = dot(v, H);
+        float t = max(1.0 - x3, 0.0);
+        float t2 = t * t;
+        float t4 = t2 * t2;
+        vec3 v2 = (vec3(-0.15986317, 0.03904839, -0.40858942) * t4 + vec3(-0.043536447, -0.02653153, 0.18614247)) * (x3 * t2);
+        vec3 F = vec3(0.055999994, 0.22399998, 0.62700003) * (t * t4) + vec3(0.944, 0.776, 0.37299997) + v2;
+        vec3 F2 = weight * clamp(F, 0.0, 1.0);
+        vec3 d = frame * L;
+        float x4 = dot(slope, slope) / dot(h, h);
+        float r2 = x4 * x4;
+        float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
         total += weight;
-        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
-        share += F;
+        light += F2 * environment_lookup(u_envRadiance, d, level2);
+        share += F2;
     }
     vec3 all2 = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
     return light * (all2 / total);
@@ -109,5 +78,5 @@ void main()
 {
     vec3 normal = normalize(vd.normalWorld);
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
-    out1 = vec4(microfacet_reflection(faceforward(normal, -V, normal), V) * u_envLightIntensity, 1.0);
+    out1 = vec4(microfacet_light(faceforward(normal, -V, normal), V) * u_envLightIntensity, 1.0);
 }

@@ -22,106 +22,19 @@ in VertexData
 
 out vec4 out1;
 
-// The complex index of refraction of a metal from its colour face on and at the edge (O. Gulbrandsen, Artist Friendly
-// Metallic Fresnel, JCGT 2014, equations 5 and 6).
-vec3 artistic_ior(vec3 reflectivity, vec3 edge_color, out vec3 extinction)
-{
-    vec3 r = clamp(reflectivity, 0.0, 0.99);
-    vec3 root = sqrt(r);
-    vec3 v = 1.0 - r;
-    vec3 n = mix((root + 1.0) / (1.0 - root), v / (r + 1.0), edge_color);
-    vec3 above = n + 1.0;
-    vec3 below = n - 1.0;
-    extinction = sqrt(max((r * (above * above) - below * below) / v, 0.0));
-    return n;
-}
-
-// Reflectance at an interface of admittance u + iw.
-vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
-{
-    vec3 v = c - u;
-    vec3 v2 = w * w;
-    vec3 v3 = c + u;
-    return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
-}
-
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
-vec3 fresnel_admittance(float c, vec3 n, vec3 k, out vec3 w)
-{
-    vec3 t = n * n - k * k - (1.0 - c * c);
-    vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
-    w = sqrt(max(0.5 * (m - t), 0.0));
-    return sqrt(max(0.5 * (t + m), 0.0));
-}
-
-// The same for p-polarised light: the admittance divided by (n + ik)^2.
-vec3 fresnel_admittance_p(vec3 n, vec3 k, vec3 u, vec3 w, out vec3 wp)
-{
-    vec3 re = n * n - k * k;
-    vec3 im = k * (2.0 * n);
-    vec3 scale = 1.0 / max(re * re + im * im, 1e-12);
-    wp = scale * (w * re - u * im);
-    return scale * (u * re + w * im);
-}
-
-// Reflectance of a conductor of index n + ik for unpolarised light; exact.
+// Reflectance of a conductor of index n + ik for unpolarised light; exact, for c above 0. Written out, the squares of
+// the amplitudes for p- and s-polarised light have a ratio that needs no further root.
 vec3 fresnel_conductor(float c, vec3 n, vec3 k)
 {
-    vec3 w;
-    vec3 u = fresnel_admittance(c, n, k, w);
-    vec3 wp;
-    vec3 up = fresnel_admittance_p(n, k, u, w, wp);
-    vec3 v = fresnel_reflectance(c, u, w);
-    return 0.5 * (v + fresnel_reflectance(c, up, wp));
-}
-
-// A conductor's reflectance as a curve that costs little per half vector: with x = 1 - c, F = base + rise x^5 + c x^2
-// (bend + dip x^4).
-vec3 fresnel_curve(vec3 F0, vec3 F60, vec3 F82, out vec3 bend, out vec3 dip)
-{
-    vec3 rise = 1.0 - F0;
-    vec3 more60 = F60 - F0 - 0.03125 * rise;
-    vec3 more82 = F82 - F0 - 0.46266437 * rise;
-    bend = 9.047614 * more60 - 1.247679 * more82;
-    dip = 19.962864 * more82 - 16.761822 * more60;
-    return rise;
-}
-
-// The frame in which roughness is given.
-vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
-{
-    vec3 tangent = V - N * dot(N, V);
-    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
-    y = cross(N, x);
-    return x;
-}
-
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level(vec3 alpha, float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (reach * (6.2831855 * alpha.x * alpha.y)));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
-vec3 microfacet_cap(int i, float descent, vec3 s)
-{
-    float k = float(i);
-    float azimuth = 2.3999631 * k;
-    float z = 1.0 - descent * (k + 0.5);
-    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel(vec3 base, vec3 rise, vec3 bend, vec3 dip, float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    float t4 = t2 * t2;
-    return clamp(base + rise * (t * t4) + (bend + dip * t4) * (c * t2), 0.0, 1.0);
+    float c2 = c * c;
+    float s2 = 1.0 - c2;
+    vec3 t = n * n - k * k - s2;
+    vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
+    vec3 a = 2.0 * c * sqrt(max(0.5 * (t + m), 0.0));
+    vec3 b = c2 + m;
+    vec3 d = c2 * m + s2 * s2;
+    vec3 v = s2 * a;
+    return 0.5 * ((b - a) / (a + b)) * ((d - v) / (d + v) + 1.0);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -131,46 +44,52 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
     return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
 }
 
-// Light from the direction d of the map, at the level for its sample.
-vec3 microfacet_lookup(vec3 d, float level, float ratio)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(float roughness, vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V)
 {
-    float r2 = ratio * ratio;
-    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
-    return environment_lookup(u_envRadiance, d, level2);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(float roughness, vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V)
-{
-    vec3 y;
-    vec3 x = microfacet_frame(N, V, y);
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float x = dot(N, V);
+    vec3 tangent = V - N * x;
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    float NV = clamp(x, 0.0001, 1.0);
     float mean = clamp(roughness, 0.0001, 1.0);
     vec3 alpha = vec3(mean, mean, 1.0);
     vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
     vec3 wide = alpha * v;
     float stretched = length(wide);
     vec3 s = wide / stretched;
-    float x2 = mean * mean;
+    float x3 = mean * mean;
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level(alpha, reach);
-    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float x4 = 0.5 * log2(count / (reach * (mean * (6.2831855 * mean))));
+    float level = float(u_envRadianceMips) - 2.5 - x4;
+    mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        float k = float(i);
+        float azimuth = 2.3999631 * k;
+        float z = 1.0 - descent * (k + 0.5);
+        vec3 h = s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
-        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
-        vec3 F = weight * microfacet_fresnel(base, rise, bend, dip, dot(v, H));
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x3)));
+        float x5 = dot(v, H);
+        float t = max(1.0 - x5, 0.0);
+        float t2 = t * t;
+        float t4 = t2 * t2;
+        vec3 F = weight * clamp(base + rise * (t * t4) + (bend + dip * t4) * (x5 * t2), 0.0, 1.0);
+        vec3 d = frame * L;
+        float x6 = dot(slope, slope) / dot(h, h);
+        float r2 = x6 * x6;
+        float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
         total += weight;
-        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        light += F * environment_lookup(u_envRadiance, d, level2);
         share += F;
     }
     vec3 all2 = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
@@ -180,16 +99,26 @@ vec3 microfacet_reflection(float roughness, vec3 base, vec3 rise, vec3 bend, vec
 void main()
 {
     vec3 normal = normalize(vd.normalWorld);
-    vec3 metal_index_extinction;
-    vec3 metal_index_ior = artistic_ior(gold_shader_base * gold_shader_base_color, gold_shader_specular_color, metal_index_extinction);
+    vec3 r = clamp(gold_shader_base * gold_shader_base_color, 0.0, 0.99);
+    vec3 root = sqrt(r);
+    vec3 v = 1.0 - r;
+    vec3 metal_index_ior = mix((root + 1.0) / (1.0 - root), v / (r + 1.0), gold_shader_specular_color);
+    vec3 above = metal_index_ior + 1.0;
+    vec3 below = metal_index_ior - 1.0;
+    vec3 v2 = above * above;
+    vec3 metal_index_extinction = sqrt(max((r * v2 - below * below) / v, 0.0));
     float alpha = gold_shader_specular_roughness * gold_shader_specular_roughness;
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
-    vec3 N = faceforward(normal, -V, normal);
-    vec3 base = fresnel_reflectance(1.0, metal_index_ior, metal_index_extinction);
-    vec3 F60 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction);
-    vec3 bend;
-    vec3 dip;
-    vec3 rise = fresnel_curve(base, F60, fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction), bend, dip);
-    vec3 metal = microfacet_reflection(alpha, base, rise, bend, dip, N, V);
+    vec3 v3 = 1.0 - metal_index_ior;
+    vec3 v4 = metal_index_extinction * metal_index_extinction;
+    vec3 base = (v3 * v3 + v4) / max(v2 + v4, 1e-12);
+    vec3 rise = 1.0 - base;
+    vec3 v5 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction) - base;
+    vec3 more60 = v5 - 0.03125 * rise;
+    vec3 v6 = fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction) - base;
+    vec3 more82 = v6 - 0.46266437 * rise;
+    vec3 bend = 9.047614 * more60 - 1.247679 * more82;
+    vec3 dip = 19.962864 * more82 - 16.761822 * more60;
+    vec3 metal = microfacet_light(alpha, base, rise, bend, dip, faceforward(normal, -V, normal), V);
     out1 = vec4(metal * u_envLightIntensity, 1.0);
 }

@@ -23,72 +23,40 @@ in VertexData
 
 out vec4 out1;
 
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
-vec3 fresnel_admittance(float c, float n, out vec3 w)
-{
-    float t = n * n - (1.0 - c * c);
-    vec3 m = sqrt(vec3(t * t));
-    w = sqrt(max(0.5 * (m - t), 0.0));
-    return sqrt(max(0.5 * (t + m), 0.0));
-}
-
-// The same for p-polarised light: the admittance divided by (n + ik)^2.
-vec3 fresnel_admittance_p(float n, vec3 u, vec3 w, out vec3 wp)
-{
-    float re = n * n;
-    float scale = 1.0 / max(re * re, 1e-12);
-    wp = scale * (w * re);
-    return scale * (u * re);
-}
-
-// Reflectance at an interface of admittance u + iw.
-vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
-{
-    vec3 v = c - u;
-    vec3 v2 = w * w;
-    vec3 v3 = c + u;
-    return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
-}
-
-// Response of the eye, as XYZ, to interference of one order, from its phase difference at unit wave number and the
-// shift at the interfaces: four Gaussians in wave number (Belcour and Barla 2017, eq. 10 and their numbers).
-vec3 interference(float phase, vec3 shift)
-{
-    vec3 v = vec3(9.04581e-08, 1.068737e-07, 1.069699e-07) * cos(shift + vec3(1681000.0, 1795300.0, 2208400.0) * phase);
-    vec3 v2 = vec3(1.644e-08 * cos(2239900.0 * phase + shift.x) * exp(phase * (-4528200000.0 * phase)), 0.0, 0.0);
-    return 9358910.0 * (v * exp(phase * (vec3(-4327800000.0, -9304600000.0, -6612100000.0) * phase)) + v2);
-}
-
-// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
-// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
-// nanometres.
+// Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8).
 vec3 fresnel_thin_film(float c, float thickness, float film_ior)
 {
     float film = max(film_ior, 1.0);
     float inside = sqrt(1.0 - (1.0 - c * c) / (film * film));
     float phase = inside * (thickness * (1.256637e-08 * film));
-    float n = 1.5 / film;
-    vec3 w;
-    vec3 u = fresnel_admittance(inside, n, w);
-    vec3 wp;
-    vec3 up = fresnel_admittance_p(n, u, w, wp);
-    float x = film * inside;
-    float x2 = inside / film;
-    float x3 = -2.0 * inside;
-    float x4 = inside * inside;
+    float x = 1.5 / film;
+    float re = x * x;
+    float x2 = inside * inside;
+    float t = re - (1.0 - x2);
+    vec3 m = sqrt(vec3(t * t));
+    vec3 u = sqrt(max(0.5 * (t + m), 0.0));
+    vec3 w = sqrt(max(0.5 * (m - t), 0.0));
+    float scale = 1.0 / max(re * re, 1e-12);
+    vec3 up = scale * (re * u);
+    vec3 wp = scale * (re * w);
+    float x3 = film * inside;
+    float x4 = inside / film;
+    float x5 = -2.0 * inside;
     vec3 u2 = u;
     vec3 w2 = w;
     vec3 sum = vec3(0.0);
     for (int p = 0; p < 2; p++)
     {
-        float y = p == 0 ? x : x2;
+        float y = p == 0 ? x3 : x4;
         float r = (c - y) / (c + y);
         float R12 = r * r;
         float T = 1.0 - R12;
-        vec3 R23 = fresnel_reflectance(inside, u2, w2);
-        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
-        vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
+        vec3 v = inside - u2;
+        vec3 v2 = w2 * w2;
+        vec3 v3 = inside + u2;
+        vec3 R23 = (v * v + v2) / max(v2 + v3 * v3, 1e-12);
+        vec3 v4 = atan(w2 * x5, x2 - u2 * u2 - v2);
+        vec3 shift = v4 + (0.0 < r ? 3.1415927 : 0.0);
         vec3 R123 = R12 * R23;
         vec3 steady = R23 * (T * T) / (1.0 - R123);
         vec3 R123_2 = sqrt(R123);
@@ -97,61 +65,22 @@ vec3 fresnel_thin_film(float c, float thickness, float film_ior)
         for (int i = 0; i < 2; i++)
         {
             vec3 wave2 = R123_2 * wave;
-            float x5 = float(i + 1);
-            sum2 += 2.0 * wave2 * interference(phase * x5, shift * x5);
+            float x6 = float(i + 1);
+            float x7 = phase * x6;
+            vec3 v5 = shift * x6;
+            vec3 v6 = cos(v5 + vec3(1681000.0, 1795300.0, 2208400.0) * x7);
+            vec3 v7 = exp(x7 * (vec3(-4327800000.0, -9304600000.0, -6612100000.0) * x7));
+            float second = 1.644e-08 * cos(2239900.0 * x7 + v5.x) * exp(x7 * (-4528200000.0 * x7));
+            vec3 v8 = 9358910.0 * (vec3(9.04581e-08, 1.068737e-07, 1.069699e-07) * v6 * v7 + vec3(second, 0.0, 0.0));
+            sum2 += 2.0 * wave2 * v8;
             wave = wave2;
         }
         u2 = up;
         w2 = wp;
         sum = sum2;
     }
-    vec3 v2 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
-    return clamp(0.5 * v2, 0.0, 1.0);
-}
-
-// A thin film's reflectance is taken once, at the angle of the view, instead of per half vector.
-vec3 dielectric_film(float thinfilm_thickness, float thinfilm_ior, vec3 N, vec3 V, out vec3 rise)
-{
-    bool test = 0.0 < thinfilm_thickness;
-    vec3 base = fresnel_thin_film(clamp(dot(N, V), 0.0001, 1.0), thinfilm_thickness, thinfilm_ior);
-    rise = test ? vec3(0.0) : vec3(1.0);
-    return test ? base : vec3(0.0);
-}
-
-// The frame in which roughness is given.
-vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
-{
-    vec3 tangent = V - N * dot(N, V);
-    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
-    y = cross(N, x);
-    return x;
-}
-
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level(vec3 alpha, float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (reach * (6.2831855 * alpha.x * alpha.y)));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
-vec3 microfacet_cap(int i, float descent, vec3 s)
-{
-    float k = float(i);
-    float azimuth = 2.3999631 * k;
-    float z = 1.0 - descent * (k + 0.5);
-    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
-float fresnel_dielectric(float c)
-{
-    float u = sqrt(max(c * c + 1.25, 0.0));
-    float p = u / 2.25;
-    float rs = (c - u) / (c + u);
-    float rp = (c - p) / (c + p);
-    return 0.5 * (rs * rs + rp * rp);
+    vec3 v9 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
+    return clamp(0.5 * v9, 0.0, 1.0);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -161,46 +90,53 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
     return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
 }
 
-// Light from the direction d of the map, at the level for its sample.
-vec3 microfacet_lookup(vec3 d, float level, float ratio)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(float roughness, vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
 {
-    float r2 = ratio * ratio;
-    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
-    return environment_lookup(u_envRadiance, d, level2);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(float roughness, vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
-{
-    vec3 y;
-    vec3 x = microfacet_frame(N, V, y);
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float x = dot(N, V);
+    vec3 tangent = V - N * x;
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    float NV = clamp(x, 0.0001, 1.0);
     float mean = clamp(roughness, 0.0001, 1.0);
     vec3 alpha = vec3(mean, mean, 1.0);
     vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
     vec3 wide = alpha * v;
     float stretched = length(wide);
     vec3 s = wide / stretched;
-    float x2 = mean * mean;
+    float x3 = mean * mean;
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level(alpha, reach);
-    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float x4 = 0.5 * log2(count / (reach * (mean * (6.2831855 * mean))));
+    float level = float(u_envRadianceMips) - 2.5 - x4;
+    mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        float k = float(i);
+        float azimuth = 2.3999631 * k;
+        float z = 1.0 - descent * (k + 0.5);
+        vec3 h = s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
-        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
-        vec3 F = weight * (base + rise * fresnel_dielectric(dot(v, H)));
+        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x3)));
+        float x5 = dot(v, H);
+        float u = sqrt(max(x5 * x5 + 1.25, 0.0));
+        float p = u / 2.25;
+        float rs = (x5 - u) / (x5 + u);
+        float rp = (x5 - p) / (x5 + p);
+        vec3 F = weight * (base + rise * (0.5 * (rs * rs + rp * rp)));
+        vec3 d = frame * L;
+        float x6 = dot(slope, slope) / dot(h, h);
+        float r2 = x6 * x6;
+        float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
         total += weight;
-        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        light += F * environment_lookup(u_envRadiance, d, level2);
         share += F;
     }
     vec3 once = share / total;
@@ -215,10 +151,12 @@ void main()
     float alpha = film_shader_specular_roughness * film_shader_specular_roughness;
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
-    vec3 rise;
-    vec3 base = dielectric_film(film_shader_thin_film_thickness, film_shader_thin_film_IOR, N, V, rise);
+    bool test = 0.0 < film_shader_thin_film_thickness;
+    float NV = clamp(dot(V, N), 0.0001, 1.0);
+    vec3 base = fresnel_thin_film(NV, film_shader_thin_film_thickness, film_shader_thin_film_IOR);
+    vec3 rise = test ? vec3(0.0) : vec3(1.0);
     vec3 specular_lobe_albedo;
-    vec3 specular_lobe = microfacet_reflection(alpha, base, rise, N, V, specular_lobe_albedo);
+    vec3 specular_lobe = microfacet_light(alpha, test ? base : vec3(0.0), rise, N, V, specular_lobe_albedo);
     vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
     vec3 v2 = (specular_lobe + (1.0 - specular_lobe_albedo) * (max(film_shader_base_color, 0.0) * v)) * u_envLightIntensity;
     out1 = vec4(v2, 1.0);

@@ -21,14 +21,6 @@ in VertexData
 
 out vec4 out1;
 
-// Its directional albedo by quadrature, fitted by tools/fit.
-float sheen_fit(float roughness, float NV)
-{
-    float r = clamp(roughness, 0.01, 1.0);
-    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + r * (13.7158 - 4.94826 * NV - 0.698754 * r);
-    return x / (13.4539 * NV + 1.0 + r * (11.4431 * NV + 26.6426));
-}
-
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
 vec3 environment_lookup(sampler2D map, vec3 d)
 {
@@ -36,22 +28,18 @@ vec3 environment_lookup(sampler2D map, vec3 d)
     return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), 0.0).xyz;
 }
 
-vec3 sheen_bsdf_environment(vec3 color, float roughness, vec3 N, vec3 V, out vec3 albedo)
-{
-    float share = clamp(sheen_fit(roughness, clamp(dot(N, V), 0.0001, 1.0)), 0.0, 1.0);
-    albedo = vec3(share);
-    return color * share * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N);
-}
-
 void main()
 {
     vec3 normal = normalize(vd.normalWorld);
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
-    vec3 sheen_lobe_albedo;
-    vec3 sheen_lobe = sheen_bsdf_environment(velvet_shader_sheen_color, velvet_shader_sheen_roughness, N, V, sheen_lobe_albedo);
-    vec3 v = velvet_shader_base * (1.0 - velvet_shader_sheen * sheen_lobe_albedo);
-    vec3 v2 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N);
-    vec3 light = v * (max(velvet_shader_base_color, 0.0) * v2) + velvet_shader_sheen * sheen_lobe;
-    out1 = vec4(light * u_envLightIntensity, 1.0);
+    float x = clamp(dot(V, N), 0.0001, 1.0);
+    float r = clamp(velvet_shader_sheen_roughness, 0.01, 1.0);
+    float x2 = x * (1.91259 * x - 6.35138) + 3.35395;
+    float x3 = 13.4539 * x + 1.0 + r * (11.4431 * x + 26.6426);
+    float share = clamp((x2 + r * (13.7158 - 4.94826 * x - 0.698754 * r)) / x3, 0.0, 1.0);
+    vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N);
+    float x4 = velvet_shader_base * (1.0 - velvet_shader_sheen * share);
+    vec3 v2 = velvet_shader_sheen * (velvet_shader_sheen_color * share * v);
+    out1 = vec4((x4 * (max(velvet_shader_base_color, 0.0) * v) + v2) * u_envLightIntensity, 1.0);
 }
