@@ -47,7 +47,7 @@ void open_pbr_medium(color color, float depth, color scatter, output vector abso
     scattering = vector(0.0);
     if (depth > 0.0)
     {
-        vector absorbed = (vector(-log(color)) - vector(scatter)) / depth;
+        vector absorbed = (vector(-log(max(color, 0.000001))) - vector(scatter)) / depth;
         float least = min(absorbed.x, min(absorbed.y, absorbed.z));
         absorption = absorbed - min(least, 0.0);
         scattering = vector(scatter) / depth;

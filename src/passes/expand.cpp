@@ -34,16 +34,23 @@ struct Expander {
     void rewrite(Name name) {
         const Function* old = module.findOwn(name);
         ensure(old, "no function to expand in");
+        auto expands = [&](const Expr& e) {
+            const Function* callee = e.op == Op::Call ? module.find(Name(e.payload)) : nullptr;
+            return callee && isWanted(*callee);
+        };
+        if (std::none_of(old->exprs.begin(), old->exprs.end(), expands)) return;
         Function fresh;
         fresh.name = name;
         fresh.params = old->params;
         fresh.comment = old->comment;
         fresh.isInline = old->isInline;
         Builder b(module, fresh);
+        b.reserve(old->exprs.size());
         std::vector<ExprId> arguments;
         for (std::uint32_t i = 0; i < fresh.params.size(); i++) arguments.push_back(b.param(i));
         std::vector<ExprId> results = expand(*old, b, arguments);
         for (std::size_t i = 0; i < results.size(); i++) b.addResult(old->results[i].name, results[i]);
+        compact(fresh);
         module.put(std::move(fresh));
     }
 
@@ -70,6 +77,9 @@ struct Expander {
                 if (e.type != Type::Tuple) take(b, copy, id, made, 0, from.hints[i]);
             } else if (e.op == Op::Result && calls.count(from.operand(id, 0).index)) {
                 take(b, copy, id, calls[from.operand(id, 0).index], e.payload, from.hints[i]);
+            } else if (e.op == Op::Known) {
+                ExprId x = copy[from.operand(id, 0)];
+                copy.set(id, b.function().isConstant(x) ? x : b.boolean(false));
             } else {
                 copy.one(id);
             }

@@ -231,7 +231,8 @@ struct Placer {
         if (branches.empty()) return;
         std::vector<bool> isBusy(scopes.size());
         for (std::uint32_t i = 0; i < n; i++)
-            if (values[i].live && values[i].uses && (values[i].named || values[i].body != kNone || f.exprs[i].op == Op::TextureGrad))
+            if (values[i].live && values[i].uses &&
+                (values[i].named || values[i].body != kNone || f.exprs[i].op == Op::TextureGrad))
                 isBusy[values[i].scope] = true;
         std::vector<std::uint32_t> now(scopes.size());
         for (std::uint32_t s = 0; s < scopes.size(); s++) now[s] = s;
@@ -244,7 +245,8 @@ struct Placer {
             now[b.then] = now[b.otherwise] = b.scope;
             for (ExprId phi : b.phis) {
                 values[phi.index].branch = kNone;
-                values[phi.index].named = values[phi.index].uses > 1 || values[phi.index].scope != values[phi.index].useScope;
+                values[phi.index].named =
+                    values[phi.index].uses > 1 || values[phi.index].scope != values[phi.index].useScope;
                 if (values[phi.index].named) isBusy[b.scope] = true;
             }
             b.phis.clear();

@@ -38,14 +38,7 @@ vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
     return x;
 }
 
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level(vec3 alpha, float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (reach * (6.2831855 * alpha.x * alpha.y)));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+// Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
 vec3 microfacet_cap(int i, float descent, vec3 s)
 {
     float k = float(i);
@@ -69,8 +62,8 @@ vec3 microfacet_lookup(vec3 d, float level, float ratio)
     return environment_lookup(u_envRadiance, d, level2);
 }
 
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(float roughness, vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(float roughness, vec3 N, vec3 V, out vec3 albedo)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -85,7 +78,8 @@ vec3 microfacet_reflection(float roughness, vec3 N, vec3 V, out vec3 albedo)
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level(alpha, reach);
+    float x3 = 0.5 * log2(count / (reach * (mean * (6.2831855 * mean))));
+    float level = float(u_envRadianceMips) - 2.5 - x3;
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
@@ -107,24 +101,8 @@ vec3 microfacet_reflection(float roughness, vec3 N, vec3 V, out vec3 albedo)
     return light * (all2 / total);
 }
 
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level2(float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (0.3926991 * reach));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel(vec3 base, vec3 rise, float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -136,7 +114,7 @@ vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albed
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level2(reach);
+    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (0.3926991 * reach));
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
@@ -149,7 +127,9 @@ vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albed
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0625)));
-        vec3 F = weight * microfacet_fresnel(base, rise, dot(v, H));
+        float t = max(1.0 - dot(v, H), 0.0);
+        float t2 = t * t;
+        vec3 F = weight * clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -160,47 +140,8 @@ vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albed
     return light * (all2 / total);
 }
 
-// Its directional albedo by quadrature, fitted by tools/fit.
-float sheen_fit(float NV)
-{
-    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + 0.3 * (13.7158 - 4.94826 * NV - 0.20962621);
-    return x / (13.4539 * NV + 1.0 + 0.3 * (11.4431 * NV + 26.6426));
-}
-
-vec3 sheen_bsdf_environment(vec3 color, vec3 N, vec3 V, out vec3 albedo)
-{
-    float share = clamp(sheen_fit(clamp(dot(N, V), 0.0001, 1.0)), 0.0, 1.0);
-    vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    albedo = vec3(share);
-    return color * share * v;
-}
-
-// Directional albedo of a white surface by quadrature, fitted by tools/fit.
-float burley_fit(vec3 N, vec3 V)
-{
-    float t = 1.0 - clamp(dot(N, V), 0.0001, 1.0);
-    float t2 = t * t;
-    float t5 = t * (t2 * t2);
-    return t5 * (0.5 * (1.146822 - 0.183363 * t5) - 0.486356) + 1.0058225;
-}
-
-vec3 burley_diffuse_bsdf_environment(vec3 color, vec3 N, vec3 V)
-{
-    vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    return color * min(burley_fit(N, V), 1.0) * v;
-}
-
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level3(float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (6.283185e-08 * reach));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Light that n visible normals refract from the environment, through a solid sphere: in at the near side with the
-// half vector H, out at the far side, whose normal there is along dot(R, H) R - H / 2. What the surface mirrors
-// instead is not taken away here.
-vec3 microfacet_refraction(vec3 N, vec3 V)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light3(vec3 N, vec3 V)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -211,19 +152,21 @@ vec3 microfacet_refraction(vec3 N, vec3 V)
     vec3 s = wide / stretched;
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
-    float level = microfacet_level3(NV + stretched);
+    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (6.283185e-08 * (NV + stretched)));
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
-    vec3 radiance = vec3(0.0);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
         vec3 h = microfacet_cap(i, descent, s);
         vec3 slope = vec3(0.0001, 0.0001, 1.0) * h;
-        vec3 H = normalize(slope);
-        vec3 R = refract(-v, H, 0.6666667);
-        vec3 d = frame * refract(R, normalize(R * dot(H, R) - 0.5 * H), 1.5);
-        radiance += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+        vec3 d = frame * reflect(v, refract(-v, normalize(slope), 0.6666667));
+        total += 1.0;
+        light += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+        share += 1.0;
     }
-    return radiance / max(count, 1.0);
+    return light * (1.0 / total);
 }
 
 void main()
@@ -236,24 +179,29 @@ void main()
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
     vec3 coat_lobe_albedo;
-    vec3 coat_lobe = microfacet_reflection(coat_roughness * coat_roughness, N, V, coat_lobe_albedo);
+    vec3 coat_lobe = microfacet_light(coat_roughness * coat_roughness, N, V, coat_lobe_albedo);
     vec3 passed = 1.0 - coat_reflectance * coat_lobe_albedo;
     vec3 v = matte_weight * passed;
     vec3 specular_lobe_albedo;
-    vec3 specular_lobe = microfacet_reflection2(specular_color, 1.0 - specular_color, N, V, specular_lobe_albedo);
+    vec3 specular_lobe = microfacet_light2(specular_color, 1.0 - specular_color, N, V, specular_lobe_albedo);
     vec3 passed2 = v * (1.0 - 0.04 * specular_lobe_albedo);
     vec3 v2 = passed2 * (1.0 - SR_specTrans);
-    vec3 sheen_lobe_albedo;
-    vec3 sheen_lobe = sheen_bsdf_environment(mix(vec3(1.0), SR_baseColor, 0.5), N, V, sheen_lobe_albedo);
-    vec3 passed3 = v2 * (1.0 - SR_sheen * sheen_lobe_albedo);
-    vec3 diffuse = burley_diffuse_bsdf_environment(SR_baseColor, N, V);
-    vec3 scattered = SR_baseColor * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    vec3 inside = u_refractionTwoSided ? SR_baseColor * SR_baseColor : SR_baseColor;
+    float NV = clamp(dot(V, N), 0.0001, 1.0);
+    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + 0.3 * (13.7158 - 4.94826 * NV - 0.20962621);
+    float share = clamp(x / (13.4539 * NV + 1.0 + 0.3 * (11.4431 * NV + 26.6426)), 0.0, 1.0);
+    vec3 v3 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    vec3 sheen_lobe = mix(vec3(1.0), SR_baseColor, 0.5) * share * v3;
+    vec3 passed3 = v2 * (1.0 - SR_sheen * share);
+    float t = 1.0 - NV;
+    float t2 = t * t;
+    float t5 = t * (t2 * t2);
+    vec3 v4 = SR_baseColor * min(t5 * (0.5 * (1.146822 - 0.183363 * t5) - 0.486356) + 1.0058225, 1.0);
+    vec3 transmitted = (u_refractionTwoSided ? SR_baseColor * SR_baseColor : SR_baseColor) * microfacet_light3(N, V);
     vec3 albedo;
-    vec3 metal = microfacet_reflection2(SR_baseColor, 1.0 - SR_baseColor, N, V, albedo);
-    vec3 v3 = matte_weight * (passed3 * (1.0 - SR_subsurface)) * diffuse;
-    vec3 v4 = v3 + SR_subsurface * passed3 * scattered + sheen_lobe * (SR_sheen * v2);
-    vec3 v5 = v4 + SR_specTrans * passed2 * (inside * microfacet_refraction(N, V));
-    vec3 v6 = v5 + specular_lobe * (0.04 * v) + SR_metallic * passed * metal;
-    out1 = vec4((v6 + coat_reflectance * coat_lobe) * u_envLightIntensity, 1.0);
+    vec3 metal = microfacet_light2(SR_baseColor, 1.0 - SR_baseColor, N, V, albedo);
+    vec3 v5 = matte_weight * (passed3 * (1.0 - SR_subsurface)) * (v3 * v4);
+    vec3 v6 = v5 + SR_subsurface * passed3 * (SR_baseColor * v3);
+    vec3 v7 = v6 + sheen_lobe * (SR_sheen * v2) + SR_specTrans * passed2 * transmitted;
+    vec3 v8 = v7 + specular_lobe * (0.04 * v) + SR_metallic * passed * metal;
+    out1 = vec4((v8 + coat_reflectance * coat_lobe) * u_envLightIntensity, 1.0);
 }

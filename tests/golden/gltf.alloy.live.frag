@@ -30,49 +30,13 @@ in VertexData
 
 out vec4 out1;
 
-// Turns a vector about an axis by an angle in degrees (Rodrigues' formula).
-vec3 rotate_about(vec3 v, float degrees2, vec3 axis)
-{
-    vec3 a = normalize(axis);
-    float angle = radians(degrees2);
-    float cosine = cos(angle);
-    return v * cosine + cross(v, a) * sin(angle) + a * (dot(v, a) * (1.0 - cosine));
-}
-
-// The frame in which roughness is given.
-vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
-{
-    vec3 tangent = V - N * dot(N, V);
-    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
-    y = cross(N, x);
-    return x;
-}
-
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level(float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (6.283185e-08 * reach));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+// Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
 vec3 microfacet_cap(int i, float descent, vec3 s)
 {
     float k = float(i);
     float azimuth = 2.3999631 * k;
     float z = 1.0 - descent * (k + 0.5);
     return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
-float fresnel_dielectric(float c)
-{
-    float u = sqrt(max(c * c + 1.25, 0.0));
-    float p = u / 2.25;
-    float rs = (c - u) / (c + u);
-    float rp = (c - p) / (c + p);
-    return 0.5 * (rs * rs + rp * rp);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -90,12 +54,14 @@ vec3 microfacet_lookup(vec3 d, float level, float ratio)
     return environment_lookup(u_envRadiance, d, level2);
 }
 
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
 {
-    vec3 y;
-    vec3 x = microfacet_frame(N, V, y);
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float x = dot(N, V);
+    vec3 tangent = V - N * x;
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    float NV = clamp(x, 0.0001, 1.0);
     vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
     vec3 wide = vec3(0.0001, 0.0001, 1.0) * v;
     float stretched = length(wide);
@@ -103,8 +69,8 @@ vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level(reach);
-    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (6.283185e-08 * reach));
+    mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
@@ -116,7 +82,12 @@ vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 9.999999e-09)));
-        float F = weight * fresnel_dielectric(dot(v, H));
+        float x3 = dot(v, H);
+        float u = sqrt(max(x3 * x3 + 1.25, 0.0));
+        float p = u / 2.25;
+        float rs = (x3 - u) / (x3 + u);
+        float rp = (x3 - p) / (x3 + p);
+        float F = weight * (0.5 * (rs * rs + rp * rp));
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -125,32 +96,6 @@ vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
     vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
     albedo = once * all2;
     return light * (all2 / total);
-}
-
-// Its directional albedo by quadrature, fitted by tools/fit.
-float sheen_fit(float roughness, float NV)
-{
-    float r = clamp(roughness, 0.01, 1.0);
-    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + r * (13.7158 - 4.94826 * NV - 0.698754 * r);
-    return x / (13.4539 * NV + 1.0 + r * (11.4431 * NV + 26.6426));
-}
-
-vec3 sheen_bsdf_environment(vec3 color, float roughness, vec3 N, vec3 V, out vec3 albedo)
-{
-    float share = clamp(sheen_fit(roughness, clamp(dot(N, V), 0.0001, 1.0)), 0.0, 1.0);
-    vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    albedo = vec3(share);
-    return color * share * v;
-}
-
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
-vec3 fresnel_admittance(float c, out vec3 w)
-{
-    float t = 1.3313609 - (1.0 - c * c);
-    vec3 m = sqrt(vec3(t * t));
-    w = sqrt(max(0.5 * (m - t), 0.0));
-    return sqrt(max(0.5 * (t + m), 0.0));
 }
 
 // Reflectance at an interface of admittance u + iw.
@@ -162,8 +107,7 @@ vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
     return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
 }
 
-// Response of the eye, as XYZ, to interference of one order, from its phase difference at unit wave number and the
-// shift at the interfaces: four Gaussians in wave number (Belcour and Barla 2017, eq. 10 and their numbers).
+// Response of the eye to interference of one order, as XYZ (Belcour and Barla 2017, eq. 10 and their numbers).
 vec3 interference(float phase, vec3 shift)
 {
     vec3 v = vec3(9.04581e-08, 1.068737e-07, 1.069699e-07) * cos(shift + vec3(1681000.0, 1795300.0, 2208400.0) * phase);
@@ -171,32 +115,32 @@ vec3 interference(float phase, vec3 shift)
     return 9358910.0 * (v * exp(phase * (vec3(-4327800000.0, -9304600000.0, -6612100000.0) * phase)) + v2);
 }
 
-// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
-// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
-// nanometres.
+// Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8).
 vec3 fresnel_thin_film(float c, float thickness)
 {
     float inside = sqrt(1.0 - (1.0 - c * c) / 1.6899998);
     float phase = inside * (1.633628e-08 * thickness);
-    vec3 w;
-    vec3 u = fresnel_admittance(inside, w);
+    float x = inside * inside;
+    float t = 1.3313609 - (1.0 - x);
+    vec3 m = sqrt(vec3(t * t));
+    vec3 u = sqrt(max(0.5 * (t + m), 0.0));
+    vec3 w = sqrt(max(0.5 * (m - t), 0.0));
     vec3 up = 0.75111115 * u;
     vec3 wp = 0.75111115 * w;
-    float x = 1.3 * inside;
-    float x2 = inside / 1.3;
-    float x3 = -2.0 * inside;
-    float x4 = inside * inside;
+    float x2 = 1.3 * inside;
+    float x3 = inside / 1.3;
+    float x4 = -2.0 * inside;
     vec3 u2 = u;
     vec3 w2 = w;
     vec3 sum = vec3(0.0);
     for (int p = 0; p < 2; p++)
     {
-        float y = p == 0 ? x : x2;
+        float y = p == 0 ? x2 : x3;
         float r = (c - y) / (c + y);
         float R12 = r * r;
         float T = 1.0 - R12;
         vec3 R23 = fresnel_reflectance(inside, u2, w2);
-        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
+        vec3 v = atan(w2 * x4, x - u2 * u2 - w2 * w2);
         vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
         vec3 R123 = R12 * R23;
         vec3 steady = R23 * (T * T) / (1.0 - R123);
@@ -218,32 +162,6 @@ vec3 fresnel_thin_film(float c, float thickness)
     return clamp(0.5 * v2, 0.0, 1.0);
 }
 
-// Schlick's curve with any exponent, bent to pass color82 times its own value at the cosine 1/7 (Hoffman 2019, eq.
-// 6).
-vec3 generalized_schlick_curve(float thinfilm_thickness, vec3 N, vec3 V, out vec3 rise)
-{
-    bool test = 0.0 < thinfilm_thickness;
-    vec3 base = fresnel_thin_film(clamp(dot(N, V), 0.0001, 1.0), thinfilm_thickness);
-    rise = test ? vec3(0.0) : vec3(0.96);
-    return test ? base : vec3(0.040000003);
-}
-
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level2(vec3 alpha, float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (reach * (6.2831855 * alpha.x * alpha.y)));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel(vec3 base, vec3 rise, float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
-}
-
 // E: what white GGX reflects in one bounce to a view at cosine NV. Fitted by tools/fit to E by quadrature.
 float microfacet_white(float NV, float alpha)
 {
@@ -252,11 +170,15 @@ float microfacet_white(float NV, float alpha)
     return clamp(1.0 - scale * (NV * (0.0677313 - 0.519049 * NV) + 0.179275 + x), 0.01, 1.0);
 }
 
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V, vec3 X, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V, vec3 X, out vec3 albedo)
 {
-    vec3 y;
-    vec3 x = microfacet_frame(N, X, y);
+    bool isotropic = roughness.x == roughness.y;
+    vec3 tangent = isotropic ? V : X;
+    vec3 tangent2 = tangent - N * dot(N, tangent);
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x = normalize(dot(tangent2, tangent2) < 1e-08 ? cross(N, other) : tangent2);
+    vec3 y = cross(N, x);
     float NV = clamp(dot(N, V), 0.0001, 1.0);
     float x2 = clamp(roughness.x, 0.0001, 1.0);
     float x3 = clamp(roughness.y, 0.0001, 1.0);
@@ -271,7 +193,8 @@ vec3 microfacet_reflection2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level2(alpha, reach);
+    float x5 = 0.5 * log2(count / (reach * (x3 * (6.2831855 * x2))));
+    float level = float(u_envRadianceMips) - 2.5 - x5;
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
@@ -284,66 +207,51 @@ vec3 microfacet_reflection2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (toView * NL + NV * sqrt(mix(NL * NL, 1.0, x4)));
-        vec3 F = weight * microfacet_fresnel(base, rise, dot(v, H));
+        float t = max(1.0 - dot(v, H), 0.0);
+        float t2 = t * t;
+        vec3 F = weight * clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
     }
+    float E = min(reach * total / count, 1.0);
     vec3 once = share / total;
-    float white = microfacet_white(NV, mean);
-    float x5 = min(min(reach * total / count, 1.0) / white, 1.0);
-    vec3 all2 = mix(once, vec3(1.0), white) * x5;
+    float white = isotropic ? E : microfacet_white(NV, mean);
+    vec3 all2 = mix(once, vec3(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
     albedo = once * all2;
     return light * (all2 / total);
 }
 
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
-vec3 fresnel_admittance2(float c, vec3 n, out vec3 w)
-{
-    vec3 t = n * n - (1.0 - c * c);
-    vec3 m = sqrt(t * t);
-    w = sqrt(max(0.5 * (m - t), 0.0));
-    return sqrt(max(0.5 * (t + m), 0.0));
-}
-
-// The same for p-polarised light: the admittance divided by (n + ik)^2.
-vec3 fresnel_admittance_p(vec3 n, vec3 u, vec3 w, out vec3 wp)
-{
-    vec3 re = n * n;
-    vec3 scale = 1.0 / max(re * re, 1e-12);
-    wp = scale * (w * re);
-    return scale * (u * re);
-}
-
-// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
-// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
-// nanometres.
+// Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8).
 vec3 fresnel_thin_film2(float c, vec3 n, float thickness)
 {
     float inside = sqrt(1.0 - (1.0 - c * c) / 1.6899998);
     float phase = inside * (1.633628e-08 * thickness);
-    vec3 n2 = n / 1.3;
-    vec3 w;
-    vec3 u = fresnel_admittance2(inside, n2, w);
-    vec3 wp;
-    vec3 up = fresnel_admittance_p(n2, u, w, wp);
-    float x = 1.3 * inside;
-    float x2 = inside / 1.3;
-    float x3 = -2.0 * inside;
-    float x4 = inside * inside;
+    vec3 v = n / 1.3;
+    vec3 re = v * v;
+    float x = inside * inside;
+    vec3 t = re - (1.0 - x);
+    vec3 m = sqrt(t * t);
+    vec3 u = sqrt(max(0.5 * (t + m), 0.0));
+    vec3 w = sqrt(max(0.5 * (m - t), 0.0));
+    vec3 scale = 1.0 / max(re * re, 1e-12);
+    vec3 up = scale * (re * u);
+    vec3 wp = scale * (re * w);
+    float x2 = 1.3 * inside;
+    float x3 = inside / 1.3;
+    float x4 = -2.0 * inside;
     vec3 u2 = u;
     vec3 w2 = w;
     vec3 sum = vec3(0.0);
     for (int p = 0; p < 2; p++)
     {
-        float y = p == 0 ? x : x2;
+        float y = p == 0 ? x2 : x3;
         float r = (c - y) / (c + y);
         float R12 = r * r;
         float T = 1.0 - R12;
         vec3 R23 = fresnel_reflectance(inside, u2, w2);
-        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
-        vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
+        vec3 v2 = atan(w2 * x4, x - u2 * u2 - w2 * w2);
+        vec3 shift = v2 + (0.0 < r ? 3.1415927 : 0.0);
         vec3 R123 = R12 * R23;
         vec3 steady = R23 * (T * T) / (1.0 - R123);
         vec3 R123_2 = sqrt(R123);
@@ -360,20 +268,8 @@ vec3 fresnel_thin_film2(float c, vec3 n, float thickness)
         w2 = wp;
         sum = sum2;
     }
-    vec3 v2 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
-    return clamp(0.5 * v2, 0.0, 1.0);
-}
-
-// Schlick's curve with any exponent, bent to pass color82 times its own value at the cosine 1/7 (Hoffman 2019, eq.
-// 6).
-vec3 generalized_schlick_curve2(vec3 color0, float thinfilm_thickness, vec3 N, vec3 V, out vec3 rise)
-{
-    bool test = 0.0 < thinfilm_thickness;
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
-    vec3 root = sqrt(clamp(color0, 0.0, 0.99));
-    vec3 base = fresnel_thin_film2(NV, (root + 1.0) / (1.0 - root), thinfilm_thickness);
-    rise = test ? vec3(0.0) : 1.0 - color0;
-    return test ? base : color0;
+    vec3 v3 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
+    return clamp(0.5 * v3, 0.0, 1.0);
 }
 
 void main()
@@ -381,32 +277,40 @@ void main()
     vec3 normal = normalize(vd.normalWorld);
     vec3 v = normalize(vd.tangentWorld);
     float sheen_weight = max(max(wheel_sheen_color.x, wheel_sheen_color.y), wheel_sheen_color.z);
-    float sheen_alpha = wheel_sheen_roughness * wheel_sheen_roughness;
     float alpha = wheel_roughness * wheel_roughness;
     float alpha_along_clamped = clamp(mix(alpha, 1.0, wheel_anisotropy_strength * wheel_anisotropy_strength), 1e-05, 1.0);
     vec2 alpha_both = vec2(alpha_along_clamped, clamp(alpha, 1e-05, 1.0));
-    vec3 tangent_turned_unit = normalize(rotate_about(v, -57.29578 * wheel_anisotropy_rotation, normal));
+    float angle = radians(-57.29578 * wheel_anisotropy_rotation);
+    float cosine = cos(angle);
+    vec3 v2 = v * cosine + cross(v, normal) * sin(angle);
+    vec3 tangent_turned_unit = normalize(v2 + normal * (dot(normal, v) * (1.0 - cosine)));
     vec3 tangent_used = 0.0 < abs(wheel_anisotropy_rotation) ? tangent_turned_unit : v;
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
     vec3 coat_lobe_albedo;
-    vec3 coat_lobe = microfacet_reflection(N, V, coat_lobe_albedo);
+    vec3 coat_lobe = microfacet_light(N, V, coat_lobe_albedo);
     vec3 passed = 1.0 - wheel_clearcoat * coat_lobe_albedo;
-    vec3 sheen_lobe_albedo;
-    vec3 sheen_lobe = sheen_bsdf_environment(wheel_sheen_color / max(sheen_weight, 1e-05), sheen_alpha, N, V, sheen_lobe_albedo);
-    vec3 passed2 = passed * (1.0 - sheen_weight * sheen_lobe_albedo);
-    vec3 v2 = passed2 * (1.0 - wheel_metallic);
-    vec3 rise;
-    vec3 base = generalized_schlick_curve(wheel_iridescence_thickness, N, V, rise);
+    float NV = clamp(dot(V, N), 0.0001, 1.0);
+    float r = clamp(wheel_sheen_roughness * wheel_sheen_roughness, 0.01, 1.0);
+    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + r * (13.7158 - 4.94826 * NV - 0.698754 * r);
+    float share = clamp(x / (13.4539 * NV + 1.0 + r * (11.4431 * NV + 26.6426)), 0.0, 1.0);
+    vec3 v3 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    vec3 passed2 = passed * (1.0 - sheen_weight * share);
+    vec3 v4 = passed2 * (1.0 - wheel_metallic);
+    bool test = 0.0 < wheel_iridescence_thickness;
+    vec3 base = fresnel_thin_film(NV, wheel_iridescence_thickness);
+    vec3 base2 = test ? base : vec3(0.040000003);
+    vec3 rise = test ? vec3(0.0) : vec3(0.96);
     vec3 specular_film_albedo;
-    vec3 specular_film = microfacet_reflection2(alpha_both, base, rise, N, V, tangent_used, specular_film_albedo);
-    vec3 diffuse = wheel_base_color * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    vec3 rise2;
-    vec3 base2 = generalized_schlick_curve2(wheel_base_color, wheel_iridescence_thickness, N, V, rise2);
+    vec3 specular_film = microfacet_light2(alpha_both, base2, rise, N, V, tangent_used, specular_film_albedo);
+    vec3 root = sqrt(clamp(wheel_base_color, 0.0, 0.99));
+    vec3 base3 = fresnel_thin_film2(NV, (root + 1.0) / (1.0 - root), wheel_iridescence_thickness);
+    vec3 rise2 = test ? vec3(0.0) : 1.0 - wheel_base_color;
     vec3 albedo;
-    vec3 metal_film = microfacet_reflection2(alpha_both, base2, rise2, N, V, tangent_used, albedo);
-    vec3 v3 = v2 * (1.0 - specular_film_albedo) * diffuse + v2 * specular_film;
-    vec3 v4 = v3 + wheel_metallic * passed2 * metal_film + sheen_lobe * (sheen_weight * passed);
-    vec3 v5 = (v4 + wheel_clearcoat * coat_lobe) * u_envLightIntensity;
-    out1 = vec4((0.5 <= wheel_alpha ? 1.0 : 0.0) * v5, 1.0);
+    vec3 metal_film = microfacet_light2(alpha_both, test ? base3 : wheel_base_color, rise2, N, V, tangent_used, albedo);
+    vec3 v5 = v4 * (1.0 - specular_film_albedo) * (wheel_base_color * v3) + v4 * specular_film;
+    vec3 v6 = wheel_sheen_color / max(sheen_weight, 1e-05) * share * v3 * (sheen_weight * passed);
+    vec3 v7 = v5 + wheel_metallic * passed2 * metal_film + v6;
+    vec3 v8 = (v7 + wheel_clearcoat * coat_lobe) * u_envLightIntensity;
+    out1 = vec4((0.5 <= wheel_alpha ? 1.0 : 0.0) * v8, 1.0);
 }

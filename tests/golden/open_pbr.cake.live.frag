@@ -28,41 +28,11 @@ in VertexData
 
 out vec4 out1;
 
-// Roughness of a mirror as seen through a coat.
-float open_pbr_coated_roughness(float roughness, float coat_weight)
-{
-    float base = roughness * roughness;
-    return mix(roughness, sqrt(sqrt(min(base * base, 1.0))), coat_weight);
-}
-
-// Index of the base relative to its coat, weakened.
-float open_pbr_coated_ior(float coat_weight)
-{
-    float index = mix(1.5, 1.0666667, coat_weight);
-    float amplitude = (index - 1.0) / (index + 1.0);
-    float weighted = sign(amplitude) * sqrt(clamp(amplitude * amplitude, 0.0, 0.99999));
-    return (weighted + 1.0) / (1.0 - weighted);
-}
-
-// Mode "zeltner": a layer of upright fibres in which light scatters any number of times (Zeltner, Burley and Chiang
-// 2022, Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines, eq. 1).
-float fibre_albedo(float NV)
-{
-    return exp(-(NV * (0.68819004 * NV + 0.5534177) + 0.09856644) / (0.5 * (0.102330275 * NV + 0.5353364)));
-}
-
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
 vec3 environment_lookup(sampler2D map, vec3 d, float level)
 {
     float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
     return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
-}
-
-vec3 sheen_bsdf_environment(vec3 N, vec3 V, out vec3 albedo)
-{
-    float share = fibre_albedo(clamp(dot(N, V), 0.0001, 1.0));
-    albedo = vec3(share);
-    return share * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
 }
 
 // The frame in which roughness is given.
@@ -82,7 +52,7 @@ float microfacet_level(vec3 alpha, float reach)
     return float(u_envRadianceMips) - 2.5 - x;
 }
 
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+// Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
 vec3 microfacet_cap(int i, float descent, vec3 s)
 {
     float k = float(i);
@@ -110,8 +80,8 @@ vec3 microfacet_lookup(vec3 d, float level, float ratio)
     return environment_lookup(u_envRadiance, d, level2);
 }
 
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(float roughness, float ior, vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albedo)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -150,25 +120,6 @@ vec3 microfacet_reflection(float roughness, float ior, vec3 N, vec3 V, out vec3 
     return light * (all2 / total);
 }
 
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
-vec3 fresnel_admittance(float c, float n, out vec3 w)
-{
-    float t = n * n - (1.0 - c * c);
-    vec3 m = sqrt(vec3(t * t));
-    w = sqrt(max(0.5 * (m - t), 0.0));
-    return sqrt(max(0.5 * (t + m), 0.0));
-}
-
-// The same for p-polarised light: the admittance divided by (n + ik)^2.
-vec3 fresnel_admittance_p(float n, vec3 u, vec3 w, out vec3 wp)
-{
-    float re = n * n;
-    float scale = 1.0 / max(re * re, 1e-12);
-    wp = scale * (w * re);
-    return scale * (u * re);
-}
-
 // Reflectance at an interface of admittance u + iw.
 vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
 {
@@ -178,8 +129,7 @@ vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
     return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
 }
 
-// Response of the eye, as XYZ, to interference of one order, from its phase difference at unit wave number and the
-// shift at the interfaces: four Gaussians in wave number (Belcour and Barla 2017, eq. 10 and their numbers).
+// Response of the eye to interference of one order, as XYZ (Belcour and Barla 2017, eq. 10 and their numbers).
 vec3 interference(float phase, vec3 shift)
 {
     vec3 v = vec3(9.04581e-08, 1.068737e-07, 1.069699e-07) * cos(shift + vec3(1681000.0, 1795300.0, 2208400.0) * phase);
@@ -187,33 +137,35 @@ vec3 interference(float phase, vec3 shift)
     return 9358910.0 * (v * exp(phase * (vec3(-4327800000.0, -9304600000.0, -6612100000.0) * phase)) + v2);
 }
 
-// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
-// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
-// nanometres.
+// Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8).
 vec3 fresnel_thin_film(float c, float n, float thickness)
 {
     float inside = sqrt(1.0 - (1.0 - c * c) / 1.9599999);
     float phase = inside * (1.7592917e-08 * thickness);
-    float n2 = n / 1.4;
-    vec3 w;
-    vec3 u = fresnel_admittance(inside, n2, w);
-    vec3 wp;
-    vec3 up = fresnel_admittance_p(n2, u, w, wp);
-    float x = 1.4 * inside;
-    float x2 = inside / 1.4;
-    float x3 = -2.0 * inside;
-    float x4 = inside * inside;
+    float x = n / 1.4;
+    float re = x * x;
+    float x2 = inside * inside;
+    float t = re - (1.0 - x2);
+    vec3 m = sqrt(vec3(t * t));
+    vec3 u = sqrt(max(0.5 * (t + m), 0.0));
+    vec3 w = sqrt(max(0.5 * (m - t), 0.0));
+    float scale = 1.0 / max(re * re, 1e-12);
+    vec3 up = scale * (re * u);
+    vec3 wp = scale * (re * w);
+    float x3 = 1.4 * inside;
+    float x4 = inside / 1.4;
+    float x5 = -2.0 * inside;
     vec3 u2 = u;
     vec3 w2 = w;
     vec3 sum = vec3(0.0);
     for (int p = 0; p < 2; p++)
     {
-        float y = p == 0 ? x : x2;
+        float y = p == 0 ? x3 : x4;
         float r = (c - y) / (c + y);
         float R12 = r * r;
         float T = 1.0 - R12;
         vec3 R23 = fresnel_reflectance(inside, u2, w2);
-        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
+        vec3 v = atan(w2 * x5, x2 - u2 * u2 - w2 * w2);
         vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
         vec3 R123 = R12 * R23;
         vec3 steady = R23 * (T * T) / (1.0 - R123);
@@ -223,8 +175,8 @@ vec3 fresnel_thin_film(float c, float n, float thickness)
         for (int i = 0; i < 2; i++)
         {
             vec3 wave2 = R123_2 * wave;
-            float x5 = float(i + 1);
-            sum2 += 2.0 * wave2 * interference(phase * x5, shift * x5);
+            float x6 = float(i + 1);
+            sum2 += 2.0 * wave2 * interference(phase * x6, shift * x6);
             wave = wave2;
         }
         u2 = up;
@@ -235,17 +187,8 @@ vec3 fresnel_thin_film(float c, float n, float thickness)
     return clamp(0.5 * v2, 0.0, 1.0);
 }
 
-// A thin film's reflectance is taken once, at the angle of the view, instead of per half vector.
-vec3 dielectric_film(float ior, float thinfilm_thickness, vec3 N, vec3 V, out vec3 rise)
-{
-    bool test = 0.0 < thinfilm_thickness;
-    vec3 base = fresnel_thin_film(clamp(dot(N, V), 0.0001, 1.0), ior, thinfilm_thickness);
-    rise = test ? vec3(0.0) : vec3(1.0);
-    return test ? base : vec3(0.0);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection2(float roughness, float ior, vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light2(float roughness, float ior, vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -284,17 +227,8 @@ vec3 microfacet_reflection2(float roughness, float ior, vec3 base, vec3 rise, ve
     return light * (all2 / total);
 }
 
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel(vec3 base, vec3 rise, float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection3(float roughness, vec3 base, vec3 rise, vec3 N, vec3 V)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light3(float roughness, vec3 base, vec3 rise, vec3 N, vec3 V)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -322,7 +256,9 @@ vec3 microfacet_reflection3(float roughness, vec3 base, vec3 rise, vec3 N, vec3 
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
-        vec3 F = weight * microfacet_fresnel(base, rise, dot(v, H));
+        float t = max(1.0 - dot(v, H), 0.0);
+        float t2 = t * t;
+        vec3 F = weight * clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -331,53 +267,36 @@ vec3 microfacet_reflection3(float roughness, vec3 base, vec3 rise, vec3 N, vec3 
     return light * (all2 / total);
 }
 
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
-vec3 fresnel_admittance2(float c, vec3 n, out vec3 w)
-{
-    vec3 t = n * n - (1.0 - c * c);
-    vec3 m = sqrt(t * t);
-    w = sqrt(max(0.5 * (m - t), 0.0));
-    return sqrt(max(0.5 * (t + m), 0.0));
-}
-
-// The same for p-polarised light: the admittance divided by (n + ik)^2.
-vec3 fresnel_admittance_p2(vec3 n, vec3 u, vec3 w, out vec3 wp)
-{
-    vec3 re = n * n;
-    vec3 scale = 1.0 / max(re * re, 1e-12);
-    wp = scale * (w * re);
-    return scale * (u * re);
-}
-
-// A thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8): the Airy sum over the orders of
-// interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness is in
-// nanometres.
+// Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8).
 vec3 fresnel_thin_film2(float c, vec3 n, float thickness)
 {
     float inside = sqrt(1.0 - (1.0 - c * c) / 1.9599999);
     float phase = inside * (1.7592917e-08 * thickness);
-    vec3 n2 = n / 1.4;
-    vec3 w;
-    vec3 u = fresnel_admittance2(inside, n2, w);
-    vec3 wp;
-    vec3 up = fresnel_admittance_p2(n2, u, w, wp);
-    float x = 1.4 * inside;
-    float x2 = inside / 1.4;
-    float x3 = -2.0 * inside;
-    float x4 = inside * inside;
+    vec3 v = n / 1.4;
+    vec3 re = v * v;
+    float x = inside * inside;
+    vec3 t = re - (1.0 - x);
+    vec3 m = sqrt(t * t);
+    vec3 u = sqrt(max(0.5 * (t + m), 0.0));
+    vec3 w = sqrt(max(0.5 * (m - t), 0.0));
+    vec3 scale = 1.0 / max(re * re, 1e-12);
+    vec3 up = scale * (re * u);
+    vec3 wp = scale * (re * w);
+    float x2 = 1.4 * inside;
+    float x3 = inside / 1.4;
+    float x4 = -2.0 * inside;
     vec3 u2 = u;
     vec3 w2 = w;
     vec3 sum = vec3(0.0);
     for (int p = 0; p < 2; p++)
     {
-        float y = p == 0 ? x : x2;
+        float y = p == 0 ? x2 : x3;
         float r = (c - y) / (c + y);
         float R12 = r * r;
         float T = 1.0 - R12;
         vec3 R23 = fresnel_reflectance(inside, u2, w2);
-        vec3 v = atan(w2 * x3, x4 - u2 * u2 - w2 * w2);
-        vec3 shift = v + (0.0 < r ? 3.1415927 : 0.0);
+        vec3 v2 = atan(w2 * x4, x - u2 * u2 - w2 * w2);
+        vec3 shift = v2 + (0.0 < r ? 3.1415927 : 0.0);
         vec3 R123 = R12 * R23;
         vec3 steady = R23 * (T * T) / (1.0 - R123);
         vec3 R123_2 = sqrt(R123);
@@ -394,61 +313,57 @@ vec3 fresnel_thin_film2(float c, vec3 n, float thickness)
         w2 = wp;
         sum = sum2;
     }
-    vec3 v2 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
-    return clamp(0.5 * v2, 0.0, 1.0);
-}
-
-// Schlick's curve with any exponent, bent to pass color82 times its own value at the cosine 1/7 (Hoffman 2019, eq.
-// 6).
-vec3 generalized_schlick_curve(vec3 color0, float thinfilm_thickness, vec3 N, vec3 V, out vec3 rise)
-{
-    bool test = 0.0 < thinfilm_thickness;
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
-    vec3 root = sqrt(clamp(color0, 0.0, 0.99));
-    vec3 base = fresnel_thin_film2(NV, (root + 1.0) / (1.0 - root), thinfilm_thickness);
-    rise = test ? vec3(0.0) : 1.0 - color0;
-    return test ? base : color0;
+    vec3 v3 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
+    return clamp(0.5 * v3, 0.0, 1.0);
 }
 
 void main()
 {
     vec3 normal = normalize(vd.normalWorld);
-    float specular_roughness_coated = open_pbr_coated_roughness(layered_specular_roughness, layered_coat_weight);
+    float base = layered_specular_roughness * layered_specular_roughness;
+    float specular_roughness_coated = mix(layered_specular_roughness, sqrt(sqrt(min(base * base, 1.0))), layered_coat_weight);
     float alpha = specular_roughness_coated * specular_roughness_coated;
     float film_nanometers = 1000.0 * layered_thin_film_thickness;
-    float specular_index = open_pbr_coated_ior(layered_coat_weight);
+    float index = mix(1.5, 1.0666667, layered_coat_weight);
+    float amplitude = (index - 1.0) / (index + 1.0);
+    float weighted = sign(amplitude) * sqrt(clamp(amplitude * amplitude, 0.0, 0.99999));
+    float specular_index = (weighted + 1.0) / (1.0 - weighted);
     vec3 v = 0.3698225 / (1.0 - 0.6301775 * layered_base_color);
     vec3 coat_darkened = mix(vec3(1.0), v, layered_coat_weight);
     vec3 coat_passed = coat_darkened * mix(vec3(1.0), layered_coat_color, layered_coat_weight);
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
-    vec3 fuzz_lobe_albedo;
-    vec3 fuzz_lobe = sheen_bsdf_environment(N, V, fuzz_lobe_albedo);
-    vec3 passed = 1.0 - layered_fuzz_weight * fuzz_lobe_albedo;
+    float NV = clamp(dot(V, N), 0.0001, 1.0);
+    float share = exp(-(NV * (0.68819004 * NV + 0.5534177) + 0.09856644) / (0.5 * (0.102330275 * NV + 0.5353364)));
+    vec3 v2 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+    float passed = 1.0 - layered_fuzz_weight * share;
     vec3 coat_lobe_albedo;
-    vec3 coat_lobe = microfacet_reflection(0.0, 1.6, N, V, coat_lobe_albedo);
-    vec3 v2 = coat_passed * (passed * (1.0 - layered_coat_weight * coat_lobe_albedo));
-    vec3 v3 = v2 * (1.0 - layered_base_metalness);
-    vec3 v4 = layered_base_metalness * v2;
-    vec3 rise;
-    vec3 base = dielectric_film(specular_index, film_nanometers, N, V, rise);
+    vec3 coat_lobe = microfacet_light(0.0, 1.6, N, V, coat_lobe_albedo);
+    vec3 v3 = coat_passed * (passed * (1.0 - layered_coat_weight * coat_lobe_albedo));
+    vec3 v4 = v3 * (1.0 - layered_base_metalness);
+    vec3 v5 = layered_base_metalness * v3;
+    bool test = 0.0 < film_nanometers;
+    vec3 base2 = fresnel_thin_film(NV, specular_index, film_nanometers);
+    vec3 base3 = test ? base2 : vec3(0.0);
+    vec3 rise = test ? vec3(0.0) : vec3(1.0);
     vec3 specular_film_albedo;
-    vec3 specular_film = microfacet_reflection2(alpha, specular_index, base, rise, N, V, specular_film_albedo);
+    vec3 specular_film = microfacet_light2(alpha, specular_index, base3, rise, N, V, specular_film_albedo);
     vec3 specular_plain_albedo;
-    vec3 specular_plain = microfacet_reflection(alpha, specular_index, N, V, specular_plain_albedo);
-    vec3 passed2 = v3 * mix(1.0 - specular_plain_albedo, 1.0 - specular_film_albedo, layered_thin_film_weight);
+    vec3 specular_plain = microfacet_light(alpha, specular_index, N, V, specular_plain_albedo);
+    vec3 passed2 = v4 * mix(1.0 - specular_plain_albedo, 1.0 - specular_film_albedo, layered_thin_film_weight);
     float x = 1.0 - layered_thin_film_weight;
-    vec3 v5 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    vec3 metal_plain = microfacet_reflection3(alpha, layered_base_color, 1.0 - layered_base_color, N, V);
-    vec3 rise2;
-    vec3 base2 = generalized_schlick_curve(layered_base_color, film_nanometers, N, V, rise2);
-    vec3 metal_film = microfacet_reflection3(alpha, base2, rise2, N, V);
-    vec3 v6 = passed2 * (max(layered_base_color, 0.0) * v5) + specular_plain * (v3 * x);
-    vec3 v7 = v6 + specular_film * (layered_thin_film_weight * v3);
-    vec3 v8 = layered_thin_film_weight * v4 * metal_film;
-    vec3 v9 = v7 + v4 * x * metal_plain + v8;
-    vec3 light = v9 + coat_lobe * (layered_coat_weight * passed) + layered_fuzz_weight * fuzz_lobe;
-    vec3 v10 = layered_coat_color * (layered_coat_weight * (0.9467456 * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0))));
-    vec3 v11 = layered_emission_luminance * (1.0 - layered_coat_weight + v10);
-    out1 = vec4(light * u_envLightIntensity + v11, 1.0);
+    vec3 rise2 = 1.0 - layered_base_color;
+    vec3 root = sqrt(clamp(layered_base_color, 0.0, 0.99));
+    vec3 base4 = fresnel_thin_film2(NV, (root + 1.0) / (1.0 - root), film_nanometers);
+    vec3 rise3 = test ? vec3(0.0) : rise2;
+    vec3 metal_film = microfacet_light3(alpha, test ? base4 : layered_base_color, rise3, N, V);
+    vec3 v6 = passed2 * (max(layered_base_color, 0.0) * v2) + specular_plain * (v4 * x);
+    vec3 v7 = v5 * x * microfacet_light3(alpha, layered_base_color, rise2, N, V);
+    vec3 v8 = v6 + specular_film * (layered_thin_film_weight * v4) + v7;
+    vec3 v9 = v8 + layered_thin_film_weight * v5 * metal_film;
+    vec3 v10 = v9 + coat_lobe * (layered_coat_weight * passed);
+    vec3 v11 = (v10 + layered_fuzz_weight * (share * v2)) * u_envLightIntensity;
+    vec3 v12 = layered_coat_color * (layered_coat_weight * (0.9467456 * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0))));
+    vec3 v13 = v11 + layered_emission_luminance * (1.0 - layered_coat_weight + v12);
+    out1 = vec4(v13, 1.0);
 }

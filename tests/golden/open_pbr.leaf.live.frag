@@ -22,42 +22,6 @@ in VertexData
 
 out vec4 out1;
 
-// The frame in which roughness is given.
-vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
-{
-    vec3 tangent = V - N * dot(N, V);
-    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
-    y = cross(N, x);
-    return x;
-}
-
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level(float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (0.050893806 * reach));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
-vec3 microfacet_cap(int i, float descent, vec3 s)
-{
-    float k = float(i);
-    float azimuth = 2.3999631 * k;
-    float z = 1.0 - descent * (k + 0.5);
-    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
-float fresnel_dielectric(float c)
-{
-    float u = sqrt(max(c * c + 1.25, 0.0));
-    float p = u / 2.25;
-    float rs = (c - u) / (c + u);
-    float rp = (c - p) / (c + p);
-    return 0.5 * (rs * rs + rp * rp);
-}
-
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
 vec3 environment_lookup(sampler2D map, vec3 d, float level)
 {
@@ -65,20 +29,14 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
     return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
 }
 
-// Light from the direction d of the map, at the level for its sample.
-vec3 microfacet_lookup(vec3 d, float level, float ratio)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
 {
-    float r2 = ratio * ratio;
-    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
-    return environment_lookup(u_envRadiance, d, level2);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
-{
-    vec3 y;
-    vec3 x = microfacet_frame(N, V, y);
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float x = dot(N, V);
+    vec3 tangent = V - N * x;
+    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
+    vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
+    float NV = clamp(x, 0.0001, 1.0);
     vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
     vec3 wide = vec3(0.09, 0.09, 1.0) * v;
     float stretched = length(wide);
@@ -86,22 +44,34 @@ vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level(reach);
-    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (0.050893806 * reach));
+    mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        float k = float(i);
+        float azimuth = 2.3999631 * k;
+        float z = 1.0 - descent * (k + 0.5);
+        vec3 h = s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
         vec3 slope = vec3(0.09, 0.09, 1.0) * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0081)));
-        float F = weight * fresnel_dielectric(dot(v, H));
+        float x3 = dot(v, H);
+        float u = sqrt(max(x3 * x3 + 1.25, 0.0));
+        float p = u / 2.25;
+        float rs = (x3 - u) / (x3 + u);
+        float rp = (x3 - p) / (x3 + p);
+        float F = weight * (0.5 * (rs * rs + rp * rp));
+        vec3 d = frame * L;
+        float x4 = dot(slope, slope) / dot(h, h);
+        float r2 = x4 * x4;
+        float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
         total += weight;
-        light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        light += F * environment_lookup(u_envRadiance, d, level2);
         share += F;
     }
     vec3 once = share / total;
@@ -117,7 +87,7 @@ void main()
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
     vec3 specular_plain_albedo;
-    vec3 specular_plain = microfacet_reflection(N, V, specular_plain_albedo);
+    vec3 specular_plain = microfacet_light(N, V, specular_plain_albedo);
     vec3 passed = 1.0 - specular_plain_albedo;
     vec3 v = 0.5 * (wall_subsurface_weight * passed);
     vec3 v2 = wall_subsurface_color * (wall_subsurface_scatter_anisotropy + 1.0) * v;

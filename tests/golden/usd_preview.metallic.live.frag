@@ -23,20 +23,6 @@ in VertexData
 
 out vec4 out1;
 
-// The complex index of refraction of a metal from its colour face on and at the edge (O. Gulbrandsen, Artist Friendly
-// Metallic Fresnel, JCGT 2014, equations 5 and 6).
-vec3 artistic_ior(vec3 reflectivity, vec3 edge_color, out vec3 extinction)
-{
-    vec3 r = clamp(reflectivity, 0.0, 0.99);
-    vec3 root = sqrt(r);
-    vec3 v = 1.0 - r;
-    vec3 n = mix((root + 1.0) / (1.0 - root), v / (r + 1.0), edge_color);
-    vec3 above = n + 1.0;
-    vec3 below = n - 1.0;
-    extinction = sqrt(max((r * (above * above) - below * below) / v, 0.0));
-    return n;
-}
-
 // The frame in which roughness is given.
 vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
 {
@@ -54,22 +40,13 @@ float microfacet_level(float reach)
     return float(u_envRadianceMips) - 2.5 - x;
 }
 
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+// Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
 vec3 microfacet_cap(int i, float descent, vec3 s)
 {
     float k = float(i);
     float azimuth = 2.3999631 * k;
     float z = 1.0 - descent * (k + 0.5);
     return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel(float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    return vec3(clamp(0.96 * (t * (t2 * t2)) + 0.040000003, 0.0, 1.0));
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -87,8 +64,8 @@ vec3 microfacet_lookup(vec3 d, float level, float ratio)
     return environment_lookup(u_envRadiance, d, level2);
 }
 
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -113,7 +90,9 @@ vec3 microfacet_reflection(vec3 N, vec3 V, out vec3 albedo)
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 9.999999e-09)));
-        vec3 F = weight * microfacet_fresnel(dot(v, H));
+        float t = max(1.0 - dot(v, H), 0.0);
+        float t2 = t * t;
+        float F = weight * clamp(0.96 * (t * (t2 * t2)) + 0.040000003, 0.0, 1.0);
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -131,17 +110,8 @@ float microfacet_level2(float reach)
     return float(u_envRadianceMips) - 2.5 - x;
 }
 
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel2(vec3 base, vec3 rise, float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -166,7 +136,9 @@ vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albed
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0625)));
-        vec3 F = weight * microfacet_fresnel2(base, rise, dot(v, H));
+        float t = max(1.0 - dot(v, H), 0.0);
+        float t2 = t * t;
+        vec3 F = weight * clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -177,70 +149,23 @@ vec3 microfacet_reflection2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albed
     return light * (all2 / total);
 }
 
-// Reflectance at an interface of admittance u + iw.
-vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
-{
-    vec3 v = c - u;
-    vec3 v2 = w * w;
-    vec3 v3 = c + u;
-    return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
-}
-
-// What the cosine is compared with at an interface to the index n + ik, as a complex number u + iw for s-polarised
-// light: the amplitude of reflection is (c - y) / (c + y) with the admittance y = sqrt((n + ik)^2 - sin^2).
-vec3 fresnel_admittance(float c, vec3 n, vec3 k, out vec3 w)
-{
-    vec3 t = n * n - k * k - (1.0 - c * c);
-    vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
-    w = sqrt(max(0.5 * (m - t), 0.0));
-    return sqrt(max(0.5 * (t + m), 0.0));
-}
-
-// The same for p-polarised light: the admittance divided by (n + ik)^2.
-vec3 fresnel_admittance_p(vec3 n, vec3 k, vec3 u, vec3 w, out vec3 wp)
-{
-    vec3 re = n * n - k * k;
-    vec3 im = k * (2.0 * n);
-    vec3 scale = 1.0 / max(re * re + im * im, 1e-12);
-    wp = scale * (w * re - u * im);
-    return scale * (u * re + w * im);
-}
-
-// Reflectance of a conductor of index n + ik for unpolarised light; exact.
+// Reflectance of a conductor of index n + ik for unpolarised light; exact, for c above 0. Written out, the squares of
+// the amplitudes for p- and s-polarised light have a ratio that needs no further root.
 vec3 fresnel_conductor(float c, vec3 n, vec3 k)
 {
-    vec3 w;
-    vec3 u = fresnel_admittance(c, n, k, w);
-    vec3 wp;
-    vec3 up = fresnel_admittance_p(n, k, u, w, wp);
-    vec3 v = fresnel_reflectance(c, u, w);
-    return 0.5 * (v + fresnel_reflectance(c, up, wp));
+    float c2 = c * c;
+    float s2 = 1.0 - c2;
+    vec3 t = n * n - k * k - s2;
+    vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
+    vec3 a = 2.0 * c * sqrt(max(0.5 * (t + m), 0.0));
+    vec3 b = c2 + m;
+    vec3 d = c2 * m + s2 * s2;
+    vec3 v = s2 * a;
+    return 0.5 * ((b - a) / (a + b)) * ((d - v) / (d + v) + 1.0);
 }
 
-// A conductor's reflectance as a curve that costs little per half vector: with x = 1 - c, F = base + rise x^5 + c x^2
-// (bend + dip x^4).
-vec3 fresnel_curve(vec3 F0, vec3 F60, vec3 F82, out vec3 bend, out vec3 dip)
-{
-    vec3 rise = 1.0 - F0;
-    vec3 more60 = F60 - F0 - 0.03125 * rise;
-    vec3 more82 = F82 - F0 - 0.46266437 * rise;
-    bend = 9.047614 * more60 - 1.247679 * more82;
-    dip = 19.962864 * more82 - 16.761822 * more60;
-    return rise;
-}
-
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel3(vec3 base, vec3 rise, vec3 bend, vec3 dip, float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    float t4 = t2 * t2;
-    return clamp(base + rise * (t * t4) + (bend + dip * t4) * (c * t2), 0.0, 1.0);
-}
-
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection3(vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light3(vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -265,7 +190,11 @@ vec3 microfacet_reflection3(vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, v
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0625)));
-        vec3 F = weight * microfacet_fresnel3(base, rise, bend, dip, dot(v, H));
+        float x2 = dot(v, H);
+        float t = max(1.0 - x2, 0.0);
+        float t2 = t * t;
+        float t4 = t2 * t2;
+        vec3 F = weight * clamp(base + rise * (t * t4) + (bend + dip * t4) * (x2 * t2), 0.0, 1.0);
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -274,10 +203,8 @@ vec3 microfacet_reflection3(vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, v
     return light * (all2 / total);
 }
 
-// Light that n visible normals refract from the environment, through a solid sphere: in at the near side with the
-// half vector H, out at the far side, whose normal there is along dot(R, H) R - H / 2. What the surface mirrors
-// instead is not taken away here.
-vec3 microfacet_refraction(vec3 N, vec3 V)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light4(vec3 N, vec3 V)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -286,50 +213,61 @@ vec3 microfacet_refraction(vec3 N, vec3 V)
     vec3 wide = vec3(0.0001, 0.0001, 1.0) * v;
     float stretched = length(wide);
     vec3 s = wide / stretched;
-    float count = float(u_envRadianceSamples);
-    float descent = (s.z + 1.0) / count;
+    float descent = (s.z + 1.0) / float(u_envRadianceSamples);
     float level = microfacet_level(NV + stretched);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
-    vec3 radiance = vec3(0.0);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
         vec3 h = microfacet_cap(i, descent, s);
         vec3 slope = vec3(0.0001, 0.0001, 1.0) * h;
-        vec3 H = normalize(slope);
-        vec3 R = refract(-v, H, 0.6666667);
-        vec3 d = frame * refract(R, normalize(R * dot(H, R) - 0.5 * H), 1.5);
-        radiance += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+        vec3 d = frame * reflect(v, refract(-v, normalize(slope), 0.6666667));
+        total += 1.0;
+        light += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+        share += 1.0;
     }
-    return radiance / max(count, 1.0);
+    return light * (1.0 / total);
 }
 
 void main()
 {
     vec3 surface_normal = normalize(vd.normalWorld);
     float nonmetal = 1.0 - by_metallic_metallic;
-    vec3 metal_index_extinction;
-    vec3 metal_index_ior = artistic_ior(by_metallic_diffuseColor, by_metallic_diffuseColor, metal_index_extinction);
+    vec3 r = clamp(by_metallic_diffuseColor, 0.0, 0.99);
+    vec3 root = sqrt(r);
+    vec3 v = 1.0 - r;
+    vec3 metal_index_ior = mix((root + 1.0) / (1.0 - root), v / (r + 1.0), by_metallic_diffuseColor);
+    vec3 above = metal_index_ior + 1.0;
+    vec3 below = metal_index_ior - 1.0;
+    vec3 v2 = above * above;
+    vec3 metal_index_extinction = sqrt(max((r * v2 - below * below) / v, 0.0));
     vec3 specular_color90 = mix(vec3(1.0), by_metallic_diffuseColor, by_metallic_metallic);
     vec3 specular_color0 = mix(0.040000003 * specular_color90, specular_color90, by_metallic_metallic);
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(surface_normal, -V, surface_normal);
     vec3 coat_lobe_albedo;
-    vec3 coat_lobe = microfacet_reflection(N, V, coat_lobe_albedo);
+    vec3 coat_lobe = microfacet_light(N, V, coat_lobe_albedo);
     vec3 passed = 1.0 - by_metallic_clearcoat * coat_lobe_albedo;
-    vec3 v = nonmetal * passed;
+    vec3 v3 = nonmetal * passed;
     vec3 specular_lobe_albedo;
-    vec3 specular_lobe = microfacet_reflection2(specular_color0, specular_color90 - specular_color0, N, V, specular_lobe_albedo);
-    vec3 passed2 = v * (1.0 - specular_lobe_albedo);
-    vec3 base = fresnel_reflectance(1.0, metal_index_ior, metal_index_extinction);
-    vec3 F60 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction);
-    vec3 bend;
-    vec3 dip;
-    vec3 rise = fresnel_curve(base, F60, fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction), bend, dip);
-    vec3 metal = microfacet_reflection3(base, rise, bend, dip, N, V);
+    vec3 specular_lobe = microfacet_light2(specular_color0, specular_color90 - specular_color0, N, V, specular_lobe_albedo);
+    vec3 passed2 = v3 * (1.0 - specular_lobe_albedo);
+    vec3 v4 = 1.0 - metal_index_ior;
+    vec3 v5 = metal_index_extinction * metal_index_extinction;
+    vec3 base = (v4 * v4 + v5) / max(v2 + v5, 1e-12);
+    vec3 rise = 1.0 - base;
+    vec3 v6 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction) - base;
+    vec3 more60 = v6 - 0.03125 * rise;
+    vec3 v7 = fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction) - base;
+    vec3 more82 = v7 - 0.46266437 * rise;
+    vec3 bend = 9.047614 * more60 - 1.247679 * more82;
+    vec3 metal = microfacet_light3(base, rise, bend, 19.962864 * more82 - 16.761822 * more60, N, V);
     vec3 diffuse = by_metallic_diffuseColor * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    vec3 v2 = passed2 * (1.0 - by_metallic_opacity) * microfacet_refraction(N, V);
-    vec3 v3 = v * specular_lobe + by_metallic_metallic * passed * metal + v2;
-    vec3 v4 = v3 + nonmetal * (by_metallic_opacity * passed2) * diffuse;
-    vec3 v5 = (v4 + by_metallic_clearcoat * coat_lobe) * u_envLightIntensity;
-    out1 = vec4((0.0 <= by_metallic_opacity ? 1.0 : 0.0) * v5, 1.0);
+    vec3 v8 = passed2 * (1.0 - by_metallic_opacity) * microfacet_light4(N, V);
+    vec3 v9 = v3 * specular_lobe + by_metallic_metallic * passed * metal + v8;
+    vec3 v10 = v9 + nonmetal * (by_metallic_opacity * passed2) * diffuse;
+    vec3 v11 = (v10 + by_metallic_clearcoat * coat_lobe) * u_envLightIntensity;
+    out1 = vec4((0.0 <= by_metallic_opacity ? 1.0 : 0.0) * v11, 1.0);
 }

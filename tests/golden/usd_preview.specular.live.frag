@@ -26,13 +26,6 @@ in VertexData
 
 out vec4 out1;
 
-// A normal read from a tangent space normal map, whose values in [0, 1] stand for [-1, 1].
-vec3 apply_normal_map(vec3 value, vec3 N, vec3 T, vec3 B)
-{
-    vec3 direction = 2.0 * value - 1.0;
-    return normalize(T * direction.x + B * direction.y + N * direction.z);
-}
-
 // The frame in which roughness is given.
 vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
 {
@@ -43,29 +36,13 @@ vec3 microfacet_frame(vec3 N, vec3 V, out vec3 y)
     return x;
 }
 
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level(float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (0.3926991 * reach));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Direction number i of a sequence over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
+// Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
 vec3 microfacet_cap(int i, float descent, vec3 s)
 {
     float k = float(i);
     float azimuth = 2.3999631 * k;
     float z = 1.0 - descent * (k + 0.5);
     return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
-}
-
-// Reflectance at cosine c. A clear interface has its exact one between base and base + rise; others follow a curve
-// (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-vec3 microfacet_fresnel(vec3 base, vec3 rise, float c)
-{
-    float t = max(1.0 - c, 0.0);
-    float t2 = t * t;
-    return clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -83,8 +60,8 @@ vec3 microfacet_lookup(vec3 d, float level, float ratio)
     return environment_lookup(u_envRadiance, d, level2);
 }
 
-// Light that n visible normals mirror from the environment.
-vec3 microfacet_reflection(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -96,7 +73,7 @@ vec3 microfacet_reflection(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
     float reach = NV + stretched;
-    float level = microfacet_level(reach);
+    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (0.3926991 * reach));
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
     float total = 1e-08;
     vec3 light = vec3(0.0);
@@ -109,7 +86,9 @@ vec3 microfacet_reflection(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0625)));
-        vec3 F = weight * microfacet_fresnel(base, rise, dot(v, H));
+        float t = max(1.0 - dot(v, H), 0.0);
+        float t2 = t * t;
+        vec3 F = weight * clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -120,17 +99,8 @@ vec3 microfacet_reflection(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo
     return light * (all2 / total);
 }
 
-// The level of detail of samples, but for what differs from one to the next.
-float microfacet_level2(float reach)
-{
-    float x = 0.5 * log2(float(u_envRadianceSamples) / (6.283185e-08 * reach));
-    return float(u_envRadianceMips) - 2.5 - x;
-}
-
-// Light that n visible normals refract from the environment, through a solid sphere: in at the near side with the
-// half vector H, out at the far side, whose normal there is along dot(R, H) R - H / 2. What the surface mirrors
-// instead is not taken away here.
-vec3 microfacet_refraction(vec3 N, vec3 V)
+// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+vec3 microfacet_light2(vec3 N, vec3 V)
 {
     vec3 y;
     vec3 x = microfacet_frame(N, V, y);
@@ -141,34 +111,37 @@ vec3 microfacet_refraction(vec3 N, vec3 V)
     vec3 s = wide / stretched;
     float count = float(u_envRadianceSamples);
     float descent = (s.z + 1.0) / count;
-    float level = microfacet_level2(NV + stretched);
+    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (6.283185e-08 * (NV + stretched)));
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
-    vec3 radiance = vec3(0.0);
+    float total = 1e-08;
+    vec3 light = vec3(0.0);
+    vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
         vec3 h = microfacet_cap(i, descent, s);
         vec3 slope = vec3(0.0001, 0.0001, 1.0) * h;
-        vec3 H = normalize(slope);
-        vec3 R = refract(-v, H, 0.6666667);
-        vec3 d = frame * refract(R, normalize(R * dot(H, R) - 0.5 * H), 1.5);
-        radiance += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+        vec3 d = frame * reflect(v, refract(-v, normalize(slope), 0.6666667));
+        total += 1.0;
+        light += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
+        share += 1.0;
     }
-    return radiance / max(count, 1.0);
+    return light * (1.0 / total);
 }
 
 void main()
 {
-    vec3 normal_encoded = 0.5 * by_specular_normal + 0.5;
-    vec3 surface_normal = apply_normal_map(normal_encoded, normalize(vd.normalWorld), normalize(vd.tangentWorld), normalize(vd.bitangentWorld));
+    vec3 direction = 2.0 * (0.5 * by_specular_normal + 0.5) - 1.0;
+    vec3 v = normalize(vd.tangentWorld) * direction.x + normalize(vd.bitangentWorld) * direction.y;
+    vec3 surface_normal = normalize(v + normalize(vd.normalWorld) * direction.z);
     float matte_unless_cut = 0.0 < by_specular_opacityThreshold ? 1.0 : by_specular_opacity;
     float opacity_cut = by_specular_opacityThreshold <= by_specular_opacity ? 1.0 : 0.0;
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(surface_normal, -V, surface_normal);
     vec3 colored_lobe_albedo;
-    vec3 colored_lobe = microfacet_reflection(by_specular_specularColor, 1.0 - by_specular_specularColor, N, V, colored_lobe_albedo);
+    vec3 colored_lobe = microfacet_light(by_specular_specularColor, 1.0 - by_specular_specularColor, N, V, colored_lobe_albedo);
     vec3 passed = 1.0 - colored_lobe_albedo;
     vec3 diffuse = 0.18 * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-    vec3 v = passed * (1.0 - matte_unless_cut) * microfacet_refraction(N, V);
-    vec3 v2 = (colored_lobe + v + matte_unless_cut * passed * diffuse) * u_envLightIntensity;
-    out1 = vec4(opacity_cut * (by_specular_emissiveColor + v2), 1.0);
+    vec3 v2 = passed * (1.0 - matte_unless_cut) * microfacet_light2(N, V);
+    vec3 v3 = (colored_lobe + v2 + matte_unless_cut * passed * diffuse) * u_envLightIntensity;
+    out1 = vec4(opacity_cut * (by_specular_emissiveColor + v3), 1.0);
 }

@@ -92,10 +92,9 @@ void main()
     vec3 specular_lobe_albedo;
     vec3 specular_lobe = microfacet_light(N, V, specular_lobe_albedo);
     vec3 passed = 1.0 - specular_lobe_albedo;
-    float x = clamp(dot(V, N), 0.0001, 1.0);
-    float x2 = x * (1.91259 * x - 6.35138) + 3.35395;
-    float x3 = 13.4539 * x + 1.0 + 0.3 * (11.4431 * x + 26.6426);
-    float share = clamp((x2 + 0.3 * (13.7158 - 4.94826 * x - 0.20962621)) / x3, 0.0, 1.0);
+    float NV = clamp(dot(V, N), 0.0001, 1.0);
+    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + 0.3 * (13.7158 - 4.94826 * NV - 0.20962621);
+    float share = clamp(x / (13.4539 * NV + 1.0 + 0.3 * (11.4431 * NV + 26.6426)), 0.0, 1.0);
     vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
     vec3 sheen_lobe = (test2 ? coarse_odd : vec3(0.9)) * share * v;
     vec3 v2 = passed * (1.0 - cloth_shader_sheen * share) * (base_color_positive * v);

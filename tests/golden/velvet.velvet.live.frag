@@ -33,13 +33,12 @@ void main()
     vec3 normal = normalize(vd.normalWorld);
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
-    float x = clamp(dot(V, N), 0.0001, 1.0);
+    float NV = clamp(dot(V, N), 0.0001, 1.0);
     float r = clamp(velvet_shader_sheen_roughness, 0.01, 1.0);
-    float x2 = x * (1.91259 * x - 6.35138) + 3.35395;
-    float x3 = 13.4539 * x + 1.0 + r * (11.4431 * x + 26.6426);
-    float share = clamp((x2 + r * (13.7158 - 4.94826 * x - 0.698754 * r)) / x3, 0.0, 1.0);
+    float x = NV * (1.91259 * NV - 6.35138) + 3.35395 + r * (13.7158 - 4.94826 * NV - 0.698754 * r);
+    float share = clamp(x / (13.4539 * NV + 1.0 + r * (11.4431 * NV + 26.6426)), 0.0, 1.0);
     vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N);
-    float x4 = velvet_shader_base * (1.0 - velvet_shader_sheen * share);
+    float x2 = velvet_shader_base * (1.0 - velvet_shader_sheen * share);
     vec3 v2 = velvet_shader_sheen * (velvet_shader_sheen_color * share * v);
-    out1 = vec4((x4 * (max(velvet_shader_base_color, 0.0) * v) + v2) * u_envLightIntensity, 1.0);
+    out1 = vec4((x2 * (max(velvet_shader_base_color, 0.0) * v) + v2) * u_envLightIntensity, 1.0);
 }

@@ -262,7 +262,7 @@ function main() -> (out1: vector4) {
 }
 )");
     p.expectNot("*=");
-    p.expect("x = matrixCompMult(m, x);");
+    p.expect("x = matrixCompMult(x, m);");
 }
 
 TEST(Print, ReturnsSeveralResults) {
