@@ -127,7 +127,7 @@ TEST(Compile, GraphMadeWithoutXmlGivesTheSameBytes) {
     d.set(roughness, "output", "out");
 
     EXPECT_TRUE(made.compiler.validate(d, made.diagnostics)) << made.diagnostics.text();
-    for (Interface interface : {Interface::Live, Interface::Baked}) {
+    for (Interface interface : {Interface::Live, Interface::Baked, Interface::Complete}) {
         Result<Shader> a = fromXml.generate("gold", interface), b = made.generate("gold", interface);
         ASSERT_TRUE(a && b) << fromXml.diagnostics.text() << made.diagnostics.text();
         EXPECT_EQ(bytesOf(*a), bytesOf(*b));
@@ -195,7 +195,7 @@ TEST(Compile, LibraryFromTextsGivesTheBytesOfTheBuiltInOne) {
     for (const fs::path& file : samples()) {
         auto a = readSample(builtin, file), b = readSample(fromTexts, file);
         if (!a || !b) continue;
-        for (Interface interface : {Interface::Live, Interface::Baked})
+        for (Interface interface : {Interface::Live, Interface::Baked, Interface::Complete})
             EXPECT_EQ(bytesOf(builtin, *a, interface), bytesOf(fromTexts, *b, interface)) << file.filename();
     }
 }
@@ -274,7 +274,7 @@ TEST(Compile, ReflectionListsTheUniformsThatTheTextsDeclare) {
         auto d = readSample(compiler, file);
         if (!d) continue;
         for (ElementId e : compiler.renderableElements(*d))
-            for (Interface interface : {Interface::Live, Interface::Baked}) {
+            for (Interface interface : {Interface::Live, Interface::Baked, Interface::Complete}) {
                 GenerateOptions how;
                 how.interface = interface;
                 Diagnostics diagnostics;
@@ -299,7 +299,7 @@ TEST(Compile, BakedShadersHaveNoValueUniforms) {
         auto d = readSample(compiler, file);
         if (!d) continue;
         for (ElementId e : compiler.renderableElements(*d))
-            for (Interface interface : {Interface::Live, Interface::Baked}) {
+            for (Interface interface : {Interface::Live, Interface::Baked, Interface::Complete}) {
                 GenerateOptions how;
                 how.interface = interface;
                 Diagnostics diagnostics;
@@ -309,13 +309,85 @@ TEST(Compile, BakedShadersHaveNoValueUniforms) {
                 for (const Json& u : reflection["uniforms"]) {
                     bool isLive = u["kind"] == "live";
                     live += isLive;
-                    EXPECT_TRUE(interface == Interface::Live || !isLive) << file.filename() << " " << u;
-                    // A live uniform says where it comes from.
-                    EXPECT_TRUE(!isLive || d->find(u["path"].get<std::string>())) << file.filename() << " " << u;
+                    EXPECT_TRUE(interface != Interface::Baked || !isLive) << file.filename() << " " << u;
+                    // A live uniform says where it comes from, or would if the document said so.
+                    std::string path = isLive ? u["path"].get<std::string>() : "";
+                    if (interface == Interface::Complete) path = path.substr(0, path.rfind('/'));
+                    EXPECT_TRUE(!isLive || d->find(path)) << file.filename() << " " << u;
                 }
             }
     }
     EXPECT_GT(live, 50u);
+}
+
+// The text of a shader without the defaults of its uniforms.
+std::string withoutDefaults(const std::string& text) {
+    std::istringstream lines(text);
+    std::string line, out;
+    while (std::getline(lines, line)) {
+        if (line.rfind("uniform ", 0) == 0) line = line.substr(0, line.find(" = "));
+        out += line + "\n";
+    }
+    return out;
+}
+
+TEST(Compile, ALiveShaderFitsAllDocumentsThatDifferInItsValues) {
+    auto text = [](int i) {
+        auto number = [&](int k) { return std::to_string(0.05 + 0.9 * ((i * 37 + k * 11) % 1000) / 1000.0); };
+        return wrap(
+            "<standard_surface name=\"s\" type=\"surfaceshader\"><input name=\"base_color\" type=\"color3\" "
+            "value=\"" +
+            number(0) + ", " + number(1) + ", " + number(2) +
+            "\"/><input name=\"specular_roughness\" type=\"float\" value=\"" + number(3) +
+            "\"/><input name=\"coat\" type=\"float\" value=\"" + number(4) + "\"/></standard_surface>");
+    };
+    Session s;
+    std::set<std::string> texts, defaults;
+    for (int i = 0; i < 1000; i++) {
+        s.read(text(i));
+        Result<Shader> shader = s.generate("s");
+        ASSERT_TRUE(shader) << s.diagnostics.text();
+        texts.insert(withoutDefaults(shader->pixel));
+        defaults.insert(shader->pixel);
+    }
+    EXPECT_EQ(texts.size(), 1u);
+    EXPECT_EQ(defaults.size(), 1000u);
+}
+
+TEST(Compile, ACompleteInterfaceHasAllInputs) {
+    Session s(wrap(R"(
+        <nodegraph name="g"><input name="much" type="float" value="0.25"/>
+          <noise3d name="grain" type="float"><input name="amplitude" type="float" interfacename="much"/></noise3d>
+          <image name="photo" type="color3"/>
+          <output name="grain_out" type="float" nodename="grain"/><output name="photo_out" type="color3" nodename="photo"/></nodegraph>
+        <standard_surface name="s" type="surfaceshader">
+          <input name="coat" type="float" nodegraph="g" output="grain_out"/>
+          <input name="base_color" type="color3" nodegraph="g" output="photo_out"/>
+          <input name="metalness" type="float" value="1"/></standard_surface>)"));
+    Result<Shader> complete = s.generate("s", Interface::Complete), live = s.generate("s");
+    ASSERT_TRUE(complete && live) << s.diagnostics.text();
+    auto uniforms = declaredUniforms(complete->pixel);
+    // Authored or not, zero or one, of the shader or of the nodes before it.
+    for (const char* name : {"s_metalness", "s_base", "s_specular_IOR", "s_transmission", "s_thin_film_thickness",
+                             "s_sheen_color", "g_much", "grain_pivot"})
+        EXPECT_TRUE(uniforms.count(name)) << name << "\n" << complete->pixel;
+    EXPECT_EQ(uniforms["s_thin_walled"], "bool");
+    EXPECT_EQ(uniforms["photo_file"], "sampler2D");
+    EXPECT_NE(complete->pixel.find("uniform float s_specular_roughness = 0.2;"), std::string::npos);
+    EXPECT_NE(complete->pixel.find("uniform float s_metalness = 1.0;"), std::string::npos);
+    // What is connected, what comes from the geometry and texts are none.
+    for (const char* name : {"s_coat", "s_base_color", "s_normal", "grain_amplitude", "grain_position",
+                             "photo_texcoord", "photo_uaddressmode"})
+        EXPECT_FALSE(uniforms.count(name)) << name;
+    EXPECT_FALSE(declaredUniforms(live->pixel).count("s_metalness"));
+}
+
+TEST(Compile, InterfacesHaveNames) {
+    Interface interface = Interface::Live;
+    EXPECT_TRUE(interfaceNamed("reduced", interface) && interface == Interface::Baked);
+    EXPECT_TRUE(interfaceNamed("complete", interface) && interface == Interface::Complete);
+    EXPECT_TRUE(interfaceNamed("live", interface) && interface == Interface::Live);
+    EXPECT_FALSE(interfaceNamed("whole", interface));
 }
 
 TEST(Compile, AllKindsOfElementsByPath) {
@@ -455,7 +527,7 @@ TEST(Compile, EveryNodeOfTheLibrary) {
             ElementId made = d->append(d->root(), library->attributeText(def, node), "n");
             if (!types.empty()) d->set(made, "type", types.size() > 1 ? "multioutput" : library->text(types[0]));
             d->set(made, "nodedef", library->text((*library)[def].name));
-            for (Interface interface : {Interface::Live, Interface::Baked}) {
+            for (Interface interface : {Interface::Live, Interface::Baked, Interface::Complete}) {
                 GenerateOptions how;
                 how.interface = interface;
                 Diagnostics diagnostics;
@@ -517,7 +589,7 @@ TEST(Compile, AnyTypeConnectedToAnyInput) {
     Compiler compiler(builtinLibrary());
     for (const auto& [maker, type] : makers)
         for (const auto& [user, result, input] : users)
-            for (Interface interface : {Interface::Live, Interface::Baked}) {
+            for (Interface interface : {Interface::Live, Interface::Baked, Interface::Complete}) {
                 auto d = compiler.newDocument();
                 auto add = [&](ElementId parent, std::string_view category, std::string_view name,
                                std::string_view of) {

@@ -12,7 +12,12 @@ namespace {
 
 using image::Image;
 
-class Oracle : public testing::TestWithParam<const char*> {
+struct Case {
+    const char* file;
+    Interface interface;
+};
+
+class Oracle : public testing::TestWithParam<Case> {
   protected:
     void SetUp() override {
         Diagnostics loading;
@@ -37,13 +42,15 @@ double difference(const Image& a, const Image& b) {
 }
 
 TEST_P(Oracle, DrawsWhatTheDriverDraws) {
-    fs::path folder = fs::path(SHADERX_SOURCE_DIR) / "examples", file = folder / GetParam();
+    fs::path folder = fs::path(SHADERX_SOURCE_DIR) / "examples", file = folder / GetParam().file;
     Diagnostics diagnostics;
     doc::FileResolver resolver(std::vector<std::string>{});
     auto document = compiler_.read(file.string(), fileText(file), resolver, diagnostics);
     ASSERT_TRUE(document) << diagnostics.text();
+    GenerateOptions how;
+    how.interface = GetParam().interface;
     Result<Shader> shader =
-        compiler_.generate(*document, compiler_.renderableElements(*document).at(0), {}, diagnostics);
+        compiler_.generate(*document, compiler_.renderableElements(*document).at(0), how, diagnostics);
     ASSERT_TRUE(shader) << diagnostics.text();
     scene::Settings settings;
     settings.size = 32;
@@ -58,8 +65,15 @@ TEST_P(Oracle, DrawsWhatTheDriverDraws) {
     EXPECT_LT(difference(*driver, *ours), 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Examples, Oracle, testing::Values("ceramic.mtlx", "lacquered_wood.mtlx"),
-                         [](const auto& which) { return fs::path(which.param).stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Examples, Oracle,
+                         testing::Values(Case{"ceramic.mtlx", Interface::Live},
+                                         Case{"lacquered_wood.mtlx", Interface::Live},
+                                         Case{"lacquered_wood.mtlx", Interface::Complete},
+                                         Case{"soap_film.mtlx", Interface::Complete}),
+                         [](const auto& which) {
+                             std::string name = fs::path(which.param.file).stem().string();
+                             return name + (which.param.interface == Interface::Live ? "_live" : "_complete");
+                         });
 
 }  // namespace
 }  // namespace shaderx::tests
