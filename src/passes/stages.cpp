@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <unordered_map>
 #include <unordered_set>
 
-#include "ir/builder.h"
+#include "passes/copy.h"
 
 namespace shaderx::passes {
 
@@ -17,7 +18,8 @@ struct Reads {
     std::vector<bool> contexts = std::vector<bool>(kContexts);
     std::vector<std::pair<Name, Type>> attributes;
     std::unordered_set<Name> uniforms;
-    std::unordered_set<Name> attributeNames;
+    std::unordered_map<Name, std::size_t> attributeNumbers;
+    bool isMixed = false;  // an attribute is read with several numbers of components
 
     void add(const Function& f) {
         std::vector<bool> live = reachable(f);
@@ -25,13 +27,21 @@ struct Reads {
             const Expr& e = f.exprs[i];
             if (!live[i]) continue;
             if (e.op == Op::Context) contexts[e.payload] = true;
-            if (e.op == Op::Attribute) {
-                std::pair<Name, Type> a{Name(e.payload), e.type};
-                if (attributeNames.insert(a.first).second) attributes.push_back(a);
-            }
+            if (e.op == Op::Attribute) addAttribute(Name(e.payload), e.type);
             if (e.op == Op::Uniform) uniforms.insert(Name(e.payload));
         }
     }
+
+    // One attribute is carried once, with as many components as any reader wants.
+    void addAttribute(Name name, Type type) {
+        const auto [it, isNew] = attributeNumbers.insert({name, attributes.size()});
+        if (isNew) attributes.emplace_back(name, type);
+        Type& carried = attributes[it->second].second;
+        if (componentCount(carried) == componentCount(type)) return;
+        isMixed = true;
+        if (componentCount(carried) < componentCount(type)) carried = type;
+    }
+    Type carried(Name name) const { return attributes[attributeNumbers.at(name)].second; }
 
     StageUniforms stage(const Module& module) const {
         StageUniforms s;
@@ -46,6 +56,32 @@ struct Reads {
         return s;
     }
 };
+
+// Reads the first components of an attribute that is carried with more.
+void narrowReads(Module& module, Function& f, const Reads& reads) {
+    Function fresh;
+    fresh.name = f.name;
+    fresh.params = f.params;
+    fresh.comment = f.comment;
+    fresh.isInline = f.isInline;
+    Builder b(module, fresh);
+    Copy copy(f, b);
+    const std::vector<bool> live = reachable(f);
+    for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
+        const Expr& e = f.exprs[i];
+        if (!live[i]) continue;
+        const Type carried = e.op == Op::Attribute ? reads.carried(Name(e.payload)) : e.type;
+        const int n = componentCount(e.type);
+        if (componentCount(carried) == n) {
+            copy.one(ExprId(i));
+            continue;
+        }
+        const ExprId whole = b.attribute(Name(e.payload), carried);
+        copy.set(ExprId(i), b.convert(b.swizzle(whole, swizzleMask(n, 0, 1 % n, 2 % n)), e.type));
+    }
+    for (const ResultValue& r : f.results) b.addResult(r.name, copy[r.value]);
+    f = std::move(fresh);
+}
 
 struct VertexMaker {
     Module& module;
@@ -102,6 +138,8 @@ ShaderInterface makeStages(Module& module, Name pixel, Name vertex) {
     Reads reads;
     for (const auto& f : module.functions) reads.add(*f);
     made.pixelUniforms = reads.stage(module);
+    for (auto& f : module.functions)
+        if (reads.isMixed) narrowReads(module, *f, reads);
 
     Function f;
     f.name = vertex;
@@ -118,7 +156,7 @@ ShaderInterface makeStages(Module& module, Name pixel, Name vertex) {
     auto byText = [&](const auto& x, const auto& y) {
         return module.names->text(x.first) < module.names->text(y.first);
     };
-    std::stable_sort(reads.attributes.begin(), reads.attributes.end(), byText);
+    std::sort(reads.attributes.begin(), reads.attributes.end(), byText);
     for (auto [name, type] : reads.attributes) {
         made.varyings.push_back({name, type});
         b.addResult(name, b.attribute(name, type));
