@@ -19,25 +19,25 @@ Builder::Builder(Module& module, Function& function) : module_(module), f_(funct
     }
 }
 
-static std::uint32_t mix(std::uint32_t h, std::uint32_t v) {
-    h = (h ^ v) * 0x9e3779b1u;
-    return h ^ h >> 15;
-}
+// Multiplication by the golden ratio spreads what differs in few bits over the high ones, of which the slot is taken.
+static std::uint64_t mix(std::uint64_t h, std::uint64_t v) { return (h ^ v) * 0x9e3779b97f4a7c15ull; }
+static std::uint32_t finish(std::uint64_t h) { return static_cast<std::uint32_t>(h >> 32); }
 
-static std::uint32_t hashStart(Op op, Type type) {
-    return mix(static_cast<std::uint32_t>(op) << 16 | static_cast<std::uint32_t>(type), 0x51ed270bu);
+// Operation, type and number of operands at once.
+static std::uint64_t head(Op op, Type type, std::size_t operands) {
+    return static_cast<std::uint64_t>(op) << 32 | static_cast<std::uint64_t>(type) << 16 | operands;
 }
 
 static std::uint32_t hashConstant(Type type, std::span<const std::uint32_t> words) {
-    std::uint32_t h = hashStart(Op::Constant, type);
-    for (std::uint32_t w : words) h = mix(h, w);
-    return h;
+    std::uint64_t h = head(Op::Constant, type, words.size());
+    for (std::uint32_t w : words) h = mix(h, w) ^ h >> 32;
+    return finish(mix(h, 1));
 }
 
-static std::uint32_t hashExpr(const Expr& e, std::span<const ExprId> operands) {
-    std::uint32_t h = mix(hashStart(e.op, e.type), e.payload);
-    for (ExprId o : operands) h = mix(h, o.index);
-    return h;
+static inline std::uint32_t hashExpr(const Expr& e, std::span<const ExprId> operands) {
+    std::uint64_t h = mix(head(e.op, e.type, operands.size()), e.payload);
+    for (ExprId o : operands) h = mix(h ^ h >> 32, o.index);
+    return finish(h);
 }
 
 static bool hasWords(const Expr& e) { return e.op == Op::Constant && componentCount(e.type) > 0; }
@@ -76,9 +76,11 @@ ExprId Builder::intern(const Expr& key, std::span<const ExprId> operands) {
     std::uint32_t i = hashExpr(key, operands) & mask;
     for (; slots_[i]; i = (i + 1) & mask) {
         const Expr& e = f_.exprs[slots_[i] - 1];
-        if (e.op == key.op && e.type == key.type && e.payload == key.payload && e.operandCount == n &&
-            std::equal(operands.begin(), operands.end(), f_.operands.begin() + e.firstOperand) && !hasWords(e))
-            return ExprId(slots_[i] - 1);
+        if (e.payload != key.payload || head(e.op, e.type, e.operandCount) != head(key.op, key.type, n)) continue;
+        const ExprId* other = f_.operands.data() + e.firstOperand;
+        std::size_t k = 0;
+        while (k < n && other[k] == operands[k]) k++;
+        if (k == n) return ExprId(slots_[i] - 1);
     }
     Expr e = key;
     e.operandCount = static_cast<std::uint16_t>(n);

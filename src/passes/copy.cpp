@@ -36,13 +36,50 @@ ExprId Copy::one(ExprId id, Type type) {
     return made;
 }
 
-ExprId Copy::plain(ExprId id, Type type) {
+ExprId Copy::raw(ExprId id) {
     const Expr& e = from_[id];
-    if (e.op == Op::Constant || e.op == Op::LoopArg || e.op == Op::Loop || e.op == Op::Lights) return one(id, type);
-    ExprId made = to_.emitRaw(e.op, type, operands(id), e.payload);
+    const bool isLoop = e.op == Op::LoopArg || e.op == Op::Loop || e.op == Op::Lights;
+    if (isLoop || (e.op == Op::Constant && componentCount(e.type))) return one(id);
+    ExprId made = to_.emitRaw(e.op, e.type, operands(id), e.payload);
     map_[id.index] = made;
     if (from_.hints[id.index]) to_.hint(made, from_.hints[id.index]);
     return made;
+}
+
+void unify(Module& module, Function& f) {
+    Function fresh;
+    fresh.name = f.name;
+    fresh.params = f.params;
+    fresh.comment = f.comment;
+    fresh.isInline = f.isInline;
+    Builder b(module, fresh);
+    b.reserve(f.exprs.size());
+    Copy copy(f, b);
+    for (std::uint32_t i = 0; i < f.exprs.size(); i++) copy.raw(ExprId(i));
+    for (const ResultValue& r : f.results) b.addResult(r.name, copy[r.value]);
+    compact(fresh);
+    f = std::move(fresh);
+}
+
+void Appender::reserve(const Function& like) {
+    f_.exprs.reserve(like.exprs.size());
+    f_.hints.reserve(like.exprs.size());
+    f_.operands.reserve(like.operands.size());
+    f_.words.reserve(like.words.size());
+}
+
+ExprId Appender::append(Op op, Type type, std::span<const ExprId> operands, std::uint32_t payload, Name hint) {
+    f_.exprs.push_back({op, 0, static_cast<std::uint16_t>(operands.size()), type, 0,
+                        static_cast<std::uint32_t>(f_.operands.size()), payload});
+    for (ExprId o : operands) f_.operands.push_back(o);
+    f_.hints.push_back(hint);
+    return ExprId(static_cast<std::uint32_t>(f_.exprs.size() - 1));
+}
+
+ExprId Appender::constant(Type type, std::span<const std::uint32_t> words, Name hint) {
+    const std::uint32_t first = static_cast<std::uint32_t>(f_.words.size());
+    f_.words.insert(f_.words.end(), words.begin(), words.end());
+    return append(Op::Constant, type, std::span<const ExprId>(), first, hint);
 }
 
 }  // namespace shaderx::passes

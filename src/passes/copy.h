@@ -1,6 +1,7 @@
 // Copies a function's expressions into another function, which simplifies them on the way.
 #pragma once
 
+#include <initializer_list>
 #include <vector>
 
 #include "ir/builder.h"
@@ -22,14 +23,36 @@ class Copy {
     ir::ExprId one(ir::ExprId e) { return one(e, from_[e].type); }
     // The same as another type of as many components.
     ir::ExprId one(ir::ExprId e, ir::Type type);
-    // The same, of operands that no rule makes simpler.
-    ir::ExprId plain(ir::ExprId e, ir::Type type);
+    // The same without a look for something simpler.
+    ir::ExprId raw(ir::ExprId e);
 
   private:
     const ir::Function& from_;
     ir::Builder& to_;
     std::uint32_t loopBase_;
     std::vector<ir::ExprId> map_, operands_;
+};
+
+// Makes equal expressions of a function one again, and drops what nothing needs.
+void unify(ir::Module& module, ir::Function& function);
+
+// Appends expressions as they are, by no rules: for passes that leave nothing to simplify. Equal ones are not one.
+class Appender {
+  public:
+    explicit Appender(ir::Function& function) : f_(function) {}
+    void reserve(const ir::Function& like);
+    ir::ExprId append(ir::Op op, ir::Type type, std::span<const ir::ExprId> operands, std::uint32_t payload = 0,
+                      Name hint = {});
+    ir::ExprId append(ir::Op op, ir::Type type, std::initializer_list<ir::ExprId> operands, std::uint32_t payload = 0,
+                      Name hint = {}) {
+        return append(op, type, std::span(operands.begin(), operands.size()), payload, hint);
+    }
+    // A constant that has words.
+    ir::ExprId constant(ir::Type type, std::span<const std::uint32_t> words, Name hint = {});
+    ir::Type type(ir::ExprId e) const { return f_.exprs[e.index].type; }
+
+  private:
+    ir::Function& f_;
 };
 
 }  // namespace shaderx::passes

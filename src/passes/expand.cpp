@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <map>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -57,10 +56,8 @@ struct Expander {
     // Copies a function's expressions to where `b` builds, with arguments for parameters; the results.
     std::vector<ExprId> expand(const Function& from, Builder& b, std::span<const ExprId> arguments) {
         Copy copy(from, b);
-        std::vector<bool> live = reachable(from);
-        std::map<std::uint32_t, Expanded> calls;  // by source expression
+        std::unordered_map<std::uint32_t, Expanded> calls;  // by source expression
         for (std::uint32_t i = 0; i < from.exprs.size(); i++) {
-            if (!live[i]) continue;
             ExprId id(i);
             const Expr& e = from.exprs[i];
             const Function* callee = e.op == Op::Call ? module.find(Name(e.payload)) : nullptr;
@@ -75,7 +72,7 @@ struct Expander {
                 made.results = expand(*callee, b, given);
                 depth--;
                 if (e.type != Type::Tuple) take(b, copy, id, made, 0, from.hints[i]);
-            } else if (e.op == Op::Result && calls.count(from.operand(id, 0).index)) {
+            } else if (e.op == Op::Result && !calls.empty() && calls.count(from.operand(id, 0).index)) {
                 take(b, copy, id, calls[from.operand(id, 0).index], e.payload, from.hints[i]);
             } else if (e.op == Op::Known) {
                 ExprId x = copy[from.operand(id, 0)];
@@ -104,14 +101,10 @@ struct Expander {
 bool isLong(const Function& f) { return holdsLoop(f) || readsImage(f); }
 
 bool isShort(const Function& f) {
-    if (isLong(f)) return false;
-    std::vector<bool> live = reachable(f);
     std::size_t operations = 0;
-    for (std::size_t i = 0; i < f.exprs.size(); i++) {
-        Op op = f.exprs[i].op;
-        operations += live[i] && op > Op::Uniform && op != Op::Swizzle && op != Op::Retype && op != Op::Result;
-    }
-    return operations <= kShort;
+    for (const Expr& e : f.exprs)
+        operations += e.op > Op::Uniform && e.op != Op::Swizzle && e.op != Op::Retype && e.op != Op::Result;
+    return operations <= kShort && !isLong(f);
 }
 
 }  // namespace
@@ -124,11 +117,8 @@ void expandCalledOnce(Module& module, Name entry) {
     std::vector<Name> reached{entry};
     std::unordered_map<Name, int> calls;
     for (std::size_t i = 0; i < reached.size(); i++) {
-        const Function& f = *module.findOwn(reached[i]);
-        std::vector<bool> live = reachable(f);
-        for (std::size_t k = 0; k < f.exprs.size(); k++)
-            if (Name callee(f.exprs[k].payload); live[k] && f.exprs[k].op == Op::Call && calls[callee]++ == 0)
-                reached.push_back(callee);
+        for (const Expr& e : module.findOwn(reached[i])->exprs)
+            if (e.op == Op::Call && calls[Name(e.payload)]++ == 0) reached.push_back(Name(e.payload));
     }
     std::unordered_set<Name> once;
     for (auto [name, count] : calls)

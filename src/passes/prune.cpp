@@ -150,7 +150,7 @@ struct Pruner {
             if (auto merged = alias.find(Name(e.payload)); e.op == Op::Call && merged != alias.end())
                 e.payload = merged->second.index;
         compact(f);
-        if (callsTwice(f)) unify(f);
+        if (callsTwice(f)) unify(module, f);
     }
 
     // The callee is narrowed already, so its results and parameters are those that are left.
@@ -195,21 +195,6 @@ struct Pruner {
             calls.push_back(ExprId(i));
         }
         return false;
-    }
-
-    void unify(Function& f) {
-        Function fresh;
-        fresh.name = f.name;
-        fresh.params = f.params;
-        fresh.comment = f.comment;
-        fresh.isInline = f.isInline;
-        Builder b(module, fresh);
-        b.reserve(f.exprs.size());
-        Copy copy(f, b);
-        for (std::uint32_t i = 0; i < f.exprs.size(); i++) copy.one(ExprId(i));
-        for (const ResultValue& r : f.results) b.addResult(r.name, copy[r.value]);
-        compact(fresh);
-        f = std::move(fresh);
     }
 
     // What is left of two functions may be the same; then the later is an alias of the earlier.

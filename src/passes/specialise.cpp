@@ -523,61 +523,40 @@ struct Specialiser {
         return std::equal(a.words.begin() + 1, a.words.end(), a.words.begin()) ? Shape::Filled : Shape::Any;
     }
 
-    // A function being copied as it is, but for some calls.
-    struct Redirected {
-        std::vector<Expr> exprs{};
-        std::vector<ExprId> operands{};
-        std::vector<Name> hints{};
-        std::vector<std::uint32_t> words{};
-
-        ExprId append(Expr e, std::span<const ExprId> o, Name hint) {
-            e.operandCount = static_cast<std::uint16_t>(o.size());
-            e.firstOperand = static_cast<std::uint32_t>(operands.size());
-            operands.insert(operands.end(), o.begin(), o.end());
-            exprs.push_back(e);
-            hints.push_back(hint);
-            return ExprId(static_cast<std::uint32_t>(exprs.size() - 1));
-        }
-        ExprId constant(Type type, std::span<const std::uint32_t> bits, Name hint = {}) {
-            Expr e{Op::Constant, 0, 0, type, 0, 0, bits[0]};
-            if (componentCount(type)) {
-                e.payload = static_cast<std::uint32_t>(words.size());
-                words.insert(words.end(), bits.begin(), bits.end());
-            }
-            return append(e, {}, hint);
-        }
-    };
-
     // Makes calls of clones that others serve for calls of these, which take more arguments.
     void redirect(Function& f) {
         auto isOther = [&](const Expr& e) { return e.op == Op::Call && instead.count(Name(e.payload)); };
         if (std::none_of(f.exprs.begin(), f.exprs.end(), isOther)) return;
-        Redirected r;
+        Function fresh;
+        fresh.name = f.name;
+        fresh.params = f.params;
+        fresh.comment = f.comment;
+        fresh.loops = f.loops;
+        Appender to(fresh);
+        to.reserve(f);
         std::vector<ExprId> at(f.exprs.size()), arguments;
         for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
-            Expr e = f.exprs[i];
-            arguments.clear();
-            for (ExprId o : f.operandsOf(e)) arguments.push_back(at[o.index]);
+            const Expr& e = f.exprs[i];
             if (e.op == Op::Constant && componentCount(e.type)) {
-                at[i] = r.constant(e.type, f.constantWords(ExprId(i)), f.hints[i]);
+                at[i] = to.constant(e.type, f.constantWords(ExprId(i)), f.hints[i]);
                 continue;
             }
+            arguments.clear();
+            for (ExprId o : f.operandsOf(e)) arguments.push_back(at[o.index]);
+            Name callee(e.payload);
             if (isOther(e)) {
-                const Name to = resolved(Name(e.payload));
-                arguments = widened(r, arguments, *known[Name(e.payload)], *known[to]);
-                e.payload = to.index;
+                callee = resolved(callee);
+                arguments = widened(to, arguments, *known[Name(e.payload)], *known[callee]);
             }
-            at[i] = r.append(e, arguments, f.hints[i]);
+            at[i] = to.append(e.op, e.type, arguments, callee.index, f.hints[i]);
         }
-        for (ResultValue& v : f.results) v.value = at[v.value.index];
-        f.exprs = std::move(r.exprs);
-        f.operands = std::move(r.operands);
-        f.hints = std::move(r.hints);
-        f.words = std::move(r.words);
+        for (const ResultValue& r : f.results) fresh.results.push_back({r.name, r.type, at[r.value.index]});
+        f = std::move(fresh);
     }
 
     // The arguments of a call of the clone `from` as those of the clone `to`, which knows less of some.
-    static std::vector<ExprId> widened(Redirected& r, std::span<const ExprId> old, const Key& from, const Key& to) {
+    static std::vector<ExprId> widened(Appender& appender, std::span<const ExprId> old, const Key& from,
+                                       const Key& to) {
         std::vector<Argument> wanted;
         eachArgument(to, [&](std::uint32_t, const Argument& a) { wanted.push_back(a); });
         std::vector<ExprId> arguments;
@@ -587,11 +566,11 @@ struct Specialiser {
             Shape shape = wanted[i].shape;
             if (shape == Shape::Constant) return;
             if (given && a.shape == Shape::Filled && shape == Shape::Any)
-                given = r.append({Op::Make, 0, 0, a.type, 0, 0, 0}, std::span(&given, 1), {});
+                given = appender.append(Op::Make, a.type, {given});
             else if (!given && shape == Shape::Filled)
-                given = r.constant(Type::Float, a.words.first(1));
+                given = appender.constant(Type::Float, a.words.first(1));
             else if (!given)
-                given = r.constant(a.type, a.words);
+                given = appender.constant(a.type, a.words);
             arguments.push_back(given);
         });
         return arguments;

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 
 #include "passes/copy.h"
+#include "passes/place.h"
 #include "targets/glsl/glsl.h"
 
 namespace shaderx::glsl {
@@ -65,55 +67,66 @@ bool takesNoMatrix(Op op) {
 }
 
 struct Legaliser {
-    Module& module;
     const Function& from;
     Function fresh{};
-    Builder b{module, fresh};
-    passes::Copy copy{from, b};
+    passes::Appender b{fresh};
+    std::vector<ExprId> copy = std::vector<ExprId>(from.exprs.size());
+    std::vector<ExprId> operands{};
+    bool mayRepeat = false;
 
     void run() {
         fresh.name = from.name;
         fresh.comment = from.comment;
+        fresh.loops = from.loops;
         for (const Param& p : from.params) fresh.params.push_back({p.name, erased(p.type)});
-        b.reserve(from.exprs.size());
-        for (std::uint32_t i = 0; i < from.exprs.size(); i++) one(ExprId(i));
-        for (const ResultValue& r : from.results) b.addResult(r.name, copy[r.value]);
+        b.reserve(from);
+        for (std::uint32_t i = 0; i < from.exprs.size(); i++) {
+            operands.clear();
+            for (ExprId o : from.operandsOf(from.exprs[i])) operands.push_back(copy[o.index]);
+            copy[i] = one(ExprId(i), operands);
+            if (Name hint = from.hints[i]; hint && !fresh.hints[copy[i].index]) fresh.hints[copy[i].index] = hint;
+        }
+        for (const ResultValue& r : from.results)
+            fresh.results.push_back({r.name, b.type(copy[r.value.index]), copy[r.value.index]});
         compact(fresh);
     }
 
-    void one(ExprId id) {
+    ExprId one(ExprId id, std::span<const ExprId> o) {
         const Expr& e = from[id];
-        Type type = erased(e.type);
-        std::span<const ExprId> o = copy.operands(id);
-        ExprId made;
+        const Type type = erased(e.type);
+        if (e.op == Op::Constant && componentCount(type)) return b.constant(type, from.constantWords(id));
         if (e.op == Op::Retype && b.type(o[0]) == type) {
-            made = o[0];
-        } else if (type != e.type && (e.op == Op::Context || e.op == Op::Uniform || e.op == Op::Attribute)) {
-            // What comes from outside keeps the type that it is declared with.
-            made = b.emit(Op::Retype, type, {copy.one(id)});
-        } else if (e.op == Op::Known) {
-            made = b.boolean(false);
-        } else if (isMatrix(type) && takesNoMatrix(e.op)) {
-            made = byColumns(e.op, type, o);
-        } else if (info(e.op).rule == TypeRule::Wider && isVector(type)) {
-            made = componentwise(e.op, type, o);
-        } else if ((e.op == Op::TextureLevel || e.op == Op::TextureGrad) && type != Type::Vector4) {
-            made = b.swizzle(b.emit(e.op, Type::Vector4, o), swizzleMask(componentCount(type), 0, 1, 2));
-        } else if (e.op == Op::Mod && type == Type::Integer) {
-            // The language's own remainder is undefined for negative numbers, its quotient is not.
-            made = b.op(Op::Sub, {o[0], b.op(Op::Mul, {o[1], b.op(Op::Div, {o[0], o[1]})})});
-        } else if (e.op == Op::Less && b.type(o[0]) == Type::Boolean) {
-            made = b.op(Op::And, {b.op(Op::Not, {o[0]}), o[1]});
-        } else if (e.op == Op::LessEqual && b.type(o[0]) == Type::Boolean) {
-            made = b.op(Op::Or, {b.op(Op::Not, {o[0]}), o[1]});
-        } else {
-            // A role that went may have stood between a vector and its parts.
-            const bool isComposed = e.op >= Op::Make && e.op <= Op::Index;
-            isComposed ? copy.one(id, type) : copy.plain(id, type);
-            return;
+            mayRepeat = mayRepeat || !passes::isFree(fresh, o[0]);  // what was done in both roles
+            return o[0];
         }
-        copy.set(id, made);
-        if (from.hints[id.index]) b.hint(made, from.hints[id.index]);
+        if (e.op == Op::Swizzle && fresh[o[0]].op == Op::Retype) return part(fresh.operand(o[0], 0), type, e.payload);
+        // What comes from outside keeps the type that it is declared with.
+        if (type != e.type && (e.op == Op::Context || e.op == Op::Uniform || e.op == Op::Attribute))
+            return b.append(Op::Retype, type, {b.append(e.op, e.type, {}, e.payload)});
+        if (e.op == Op::Known) {
+            const std::uint32_t no = 0;
+            return b.constant(Type::Boolean, std::span(&no, 1));
+        }
+        if (isMatrix(type) && takesNoMatrix(e.op)) return byColumns(e.op, type, o);
+        if (e.op == Op::Mod && type == Type::Integer) {
+            // The language's own remainder is undefined for negative numbers, its quotient is not.
+            ExprId quotient = b.append(Op::Div, type, {o[0], o[1]});
+            return b.append(Op::Sub, type, {o[0], b.append(Op::Mul, type, {o[1], quotient})});
+        }
+        if (info(e.op).rule == TypeRule::Wider && isVector(type)) return componentwise(e.op, type, o);
+        if ((e.op == Op::TextureLevel || e.op == Op::TextureGrad) && type != Type::Vector4)
+            return b.append(Op::Swizzle, type, {b.append(e.op, Type::Vector4, o)},
+                            swizzleMask(componentCount(type), 0, 1, 2));
+        if ((e.op == Op::Less || e.op == Op::LessEqual) && b.type(o[0]) == Type::Boolean)
+            return b.append(e.op == Op::Less ? Op::And : Op::Or, type, {b.append(Op::Not, type, {o[0]}), o[1]});
+        return b.append(e.op, type, o, e.payload);
+    }
+
+    // A part of what comes from outside in another role.
+    ExprId part(ExprId whole, Type type, std::uint32_t mask) {
+        const Type own = floatVector(swizzleCount(mask), info(b.type(whole)).role);
+        ExprId made = b.append(Op::Swizzle, own, {whole}, mask);
+        return own == type ? made : b.append(Op::Retype, type, {made});
     }
 
     ExprId byColumns(Op op, Type type, std::span<const ExprId> o) {
@@ -122,39 +135,45 @@ struct Legaliser {
         for (std::uint32_t c = 0; c < info(type).columns; c++) {
             std::vector<ExprId> parts(o.begin(), o.end());
             for (ExprId& part : parts)
-                if (isMatrix(b.type(part))) part = b.swizzle(part, c);
+                if (isMatrix(b.type(part))) part = b.append(Op::Swizzle, column, {part}, c);
             columns.push_back(info(op).rule == TypeRule::Wider ? componentwise(op, column, parts)
-                                                               : b.emit(op, column, parts));
+                                                               : b.append(op, column, parts));
         }
-        return b.make(type, columns);
+        return b.append(Op::Make, type, columns);
     }
 
-    ExprId componentwise(Op op, Type type, std::span<const ExprId> operands) {
+    // A vector of one number.
+    ExprId spread(ExprId number, Type type) {
+        if (!fresh.isConstant(number)) return b.append(Op::Make, type, {number});
+        std::array<std::uint32_t, 4> words;
+        words.fill(fresh.constantWords(number)[0]);
+        return b.constant(type,
+                          std::span<const std::uint32_t>(words).first(static_cast<std::size_t>(componentCount(type))));
+    }
+
+    ExprId componentwise(Op op, Type type, std::span<const ExprId> given) {
         ExprId o[3];
-        const std::size_t n = operands.size();
-        std::copy(operands.begin(), operands.end(), o);
+        const std::size_t n = given.size();
+        std::copy(given.begin(), given.end(), o);
         bool both = op == Op::Smoothstep || op == Op::Clamp;  // two edges: both scalar or both vectors
         bool anyVector = false;
         std::size_t first = op == Op::Clamp ? 1 : 0;
         for (std::size_t k = first; both && k < first + 2; k++) anyVector = anyVector || isVector(b.type(o[k]));
-        bool spread = false;
         for (std::size_t k = 0; k < n; k++) {
             if (isVector(b.type(o[k])) || (takesScalar(op, k) && !(both && anyVector))) continue;
-            // Made without the rules that would narrow it again.
-            o[k] = b.emit(Op::Make, type, {o[k]});
-            spread = true;
+            o[k] = spread(o[k], type);
         }
-        return spread ? b.emitRaw(op, type, std::span(o, n)) : b.emit(op, type, std::span<const ExprId>(o, n));
+        return b.append(op, type, std::span<const ExprId>(o, n));
     }
 };
 
 }  // namespace
 
 void legalise(Module& module, Function& function) {
-    Legaliser l{module, function};
+    Legaliser l{function};
     l.run();
-    l.fresh.name = function.name;
     function = std::move(l.fresh);
+    if (l.mayRepeat) passes::unify(module, function);
 }
 
 }  // namespace shaderx::glsl
