@@ -98,7 +98,7 @@ TEST(Generate, WritesThreeFilesForEachElement) {
 
 TEST(Generate, InterfacesDiffer) {
     OwnFolder own;
-    for (const char* interface : {"live", "baked", "reduced"}) {
+    for (const char* interface : {"complete", "live", "baked", "reduced"}) {
         Ran ran =
             shaderx("generate '" + golden("gold.mtlx").string() + "' --interface " + interface + " -o " + interface,
                     own.path());
@@ -106,6 +106,8 @@ TEST(Generate, InterfacesDiffer) {
     }
     std::string live = fileText(own.path() / "live/gold.gold.frag"),
                 baked = fileText(own.path() / "baked/gold.gold.frag");
+    EXPECT_TRUE(contains(fileText(own.path() / "complete/gold.gold.frag"), "uniform float gold_shader_coat = 0.0;"));
+    EXPECT_FALSE(contains(live, "gold_shader_coat"));
     EXPECT_TRUE(contains(live, "gold_shader_specular_roughness"));
     EXPECT_FALSE(contains(baked, "uniform vec3 gold_shader")) << baked;
     EXPECT_EQ(fileText(own.path() / "reduced/gold.gold.frag"), baked);
