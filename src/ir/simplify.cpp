@@ -70,8 +70,19 @@ struct Simplifier {
         if (op <= Op::Select) return logic();
         if (op <= Op::Index) return composition();
         if (op == Op::Result) return result();
+        if (op == Op::Ddx || op == Op::Ddy) return derivative();
         if (op >= Op::ClosureMix && op <= Op::ClosureLayer) return closure();
         return {};
+    }
+
+    // What the host supplies is the same in all pixels.
+    ExprId derivative() {
+        ExprId of = x[0];
+        while (is(of, Op::Swizzle) || is(of, Op::Retype)) of = f().operand(of, 0);
+        const Expr& e = f()[of];
+        const bool isSupplied =
+            e.op == Op::Context && info(static_cast<Context>(e.payload)).source == ContextSource::Uniform;
+        return isSupplied || e.op == Op::Constant || e.op == Op::Uniform ? zero() : ExprId();
     }
 
     // Constants in, constant out.
