@@ -134,6 +134,8 @@ struct Compilation {
     ir::Module module;
     graph::Graph graph{};
     passes::ShaderInterface interface{};
+    std::vector<graph::Authored> authored{};
+    std::unordered_set<Name> baked{};  // uniforms that decide topology
     Name pixel = names.intern("@pixel"), vertex = names.intern("@vertex");
 
     bool run(Shader& shader) {
@@ -214,6 +216,7 @@ struct Compilation {
     bool lower() {
         graph::LowerOptions how;
         how.interface = options.interface;
+        how.authored = &authored;
         std::string_view space = document.attributeText(document.root(), document.known().colorspace);
         if (!space.empty()) how.targetColorSpace = space;
         bool ok = graph::lower(graph, definitions, bodies, {}, pixel, how, module, diagnostics);
@@ -227,7 +230,7 @@ struct Compilation {
     bool specialise() {
         bool ok = passes::specialise(module, pixel, {}, made, diagnostics);
         if (ok && options.interface == Interface::Live) {
-            std::unordered_set<Name> baked = passes::topologyUniforms(module, *module.findOwn(pixel));
+            baked = passes::topologyUniforms(module, *module.findOwn(pixel));
             ok = baked.empty() || passes::specialise(module, pixel, baked, made, diagnostics);
         }
         if (!ok) return false;
@@ -275,11 +278,15 @@ struct Compilation {
         shader.element = document.path(element);
         shader.vertex = std::move(sources.vertex);
         shader.pixel = std::move(sources.pixel);
-        shader.reflection = reflect(module, interface, shader.element, sources.names, sources.output);
-        for (Name name : interface.pixelUniforms.uniforms)
-            if (const ir::Uniform* u = module.uniform(name); u && u->type == ir::Type::Texture2D)
-                shader.textures.push_back({sources.names.at(u->name), u->file, u->uAddress, u->vAddress, u->filter,
-                                           u->defaultColor, u->path});
+        shader.output = std::move(sources.output);
+        shader.topology = stableHash(shader.vertex);
+        std::size_t at = 0;
+        for (auto [begin, end] : sources.apart) {
+            shader.topology = stableHash(std::string_view(shader.pixel).substr(at, begin - at), shader.topology);
+            at = end;
+        }
+        shader.topology = stableHash(std::string_view(shader.pixel).substr(at), shader.topology);
+        reflect({module, interface, document, definitions, authored, baked, sources.names}, shader);
         if (wants(StageName::Print)) options.dumps->dump(StageName::Print, shader.vertex + "\n" + shader.pixel);
         module.sources.clear();  // nothing is left to look up, and what they point to goes
         shader.program = std::make_shared<const Program>(Program{std::move(module), std::move(interface)});

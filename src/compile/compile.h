@@ -56,8 +56,48 @@ struct GenerateOptions {
     DumpSink* dumps = nullptr;
 };
 
+// What a user interface shows of a value: texts as the document or the nodedef writes them, empty where it says nothing.
+struct UiHints {
+    std::string name, folder;
+    std::string min, max, softMin, softMax, step;
+    std::string choices, choiceValues;  // with commas between them
+    bool isAdvanced = false;
+};
+
+// What is known of a value of the document beside the value itself.
+struct ValueDescription {
+    std::string colorspace, unit, unitType;
+    std::vector<std::string> aliases;  // what MaterialX calls the uniform, where it is not called so here
+    UiHints ui;
+};
+
+// A uniform of a shader: one that the host supplies, or a live value of the document.
+struct UniformBinding : ValueDescription {
+    std::string name;  // as the text has it
+    ir::Type type = ir::Type::Float;
+    std::vector<std::uint32_t> value;  // its default, by its bits; none of textures
+    std::string_view semantic;         // what the host is to supply, "view_position"; empty for values of the document
+    std::string path;                  // of the input in the document; empty for what the host supplies
+    bool isVertex = false, isPixel = false;  // the stages that read it
+};
+
+// A value that is part of the program, although the interface is not baked, because it decides what the program
+// consists of: to change it, generate again. What is neither here nor a uniform has no effect while these stay.
+struct FixedValue : ValueDescription {
+    std::string path;
+    ir::Type type = ir::Type::Float;
+    std::vector<std::uint32_t> value;  // its bits
+    std::string text;                  // of strings, which have no bits
+};
+
+// An attribute of the vertex stage.
+struct VertexInputBinding {
+    std::string name;
+    ir::Type type;
+};
+
 // A texture that a shader reads, and how.
-struct TextureBinding {
+struct TextureBinding : ValueDescription {
     std::string uniform;  // the sampler
     std::string file;     // as the document says it, prefixes included, relative to the document; may be empty
     std::string uAddress, vAddress, filter;
@@ -73,11 +113,18 @@ struct Program {
 };
 
 struct Shader {
-    std::string element;        // its path in the document
-    std::string vertex, pixel;  // source texts
-    std::string reflection;     // JSON: uniforms, inputs, samplers; see docs/pipeline.md
+    std::string element;         // its path in the document
+    std::string vertex, pixel;   // source texts
+    std::string output;          // the variable that the pixel stage writes
+    std::uint64_t topology = 0;  // a hash of the texts but for live values, the same in every run and on every machine
+    std::vector<UniformBinding> uniforms;
+    std::vector<FixedValue> regenerate;
+    std::vector<VertexInputBinding> inputs;
     std::vector<TextureBinding> textures;
     std::shared_ptr<const Program> program;
+
+    // All of this but texts and program, as JSON; see docs/pipeline.md.
+    std::string reflection() const;
 };
 
 // The image of the project's own node library.

@@ -49,7 +49,7 @@ struct Session {
     }
 };
 
-std::string bytesOf(const Shader& s) { return s.element + "\n" + s.vertex + "\n" + s.pixel + "\n" + s.reflection; }
+std::string bytesOf(const Shader& s) { return s.element + "\n" + s.vertex + "\n" + s.pixel + "\n" + s.reflection(); }
 
 // The bytes of all that can be rendered in a document, in the order given by `reversed`.
 std::string bytesOf(Compiler& compiler, const doc::Document& document, Interface interface, bool reversed = false) {
@@ -283,7 +283,7 @@ TEST(Compile, ReflectionListsTheUniformsThatTheTextsDeclare) {
                 for (auto [text, stage] : {std::pair(&shader->pixel, "pixel"), std::pair(&shader->vertex, "vertex")}) {
                     std::set<std::string> declared;
                     for (const auto& [name, type] : declaredUniforms(*text)) declared.insert(name);
-                    EXPECT_EQ(reflectedUniforms(shader->reflection, stage), declared)
+                    EXPECT_EQ(reflectedUniforms(shader->reflection(), stage), declared)
                         << file.filename() << " " << stage;
                 }
                 for (const TextureBinding& t : shader->textures)
@@ -305,7 +305,7 @@ TEST(Compile, BakedShadersHaveNoValueUniforms) {
                 Diagnostics diagnostics;
                 Result<Shader> shader = compiler.generate(*d, e, how, diagnostics);
                 ASSERT_TRUE(shader) << diagnostics.text();
-                Json reflection = Json::parse(shader->reflection);
+                Json reflection = Json::parse(shader->reflection());
                 for (const Json& u : reflection["uniforms"]) {
                     bool isLive = u["kind"] == "live";
                     live += isLive;
@@ -677,7 +677,7 @@ TEST(Compile, TopologyIsBakedAndTheRestIsLive) {
     Result<Shader> shader = s.generate("shader");
     ASSERT_TRUE(shader) << s.diagnostics.text();
     std::set<std::string> live;
-    Json reflection = Json::parse(shader->reflection);
+    Json reflection = Json::parse(shader->reflection());
     for (const Json& u : reflection["uniforms"])
         if (u["kind"] == "live") live.insert(u["name"].get<std::string>());
     EXPECT_EQ(live, (std::set<std::string>{"shader_base", "shader_specular_roughness"}));

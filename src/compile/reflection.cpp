@@ -1,91 +1,344 @@
 #include "compile/reflection.h"
 
+#include <algorithm>
 #include <bit>
 
-#include <nlohmann/json.hpp>
+#include <fmt/format.h>
+
+#include "base/numbers.h"
+#include "compile/json.h"
+#include "graph/values.h"
 
 namespace shaderx {
 
-using Json = nlohmann::ordered_json;
 using namespace ir;
 
-static Json valueOf(Type type, const std::vector<std::uint32_t>& words) {
-    auto number = [&](std::uint32_t w) -> Json {
+namespace {
+
+bool holds(const std::vector<Context>& list, Context c) { return std::find(list.begin(), list.end(), c) != list.end(); }
+
+// The attributes that say how a value is shown.
+struct UiAttributes {
+    explicit UiAttributes(NameTable& n)
+        : name(n.find("uiname")), folder(n.find("uifolder")), min(n.find("uimin")), max(n.find("uimax")),
+          softMin(n.find("uisoftmin")), softMax(n.find("uisoftmax")), step(n.find("uistep")), choices(n.find("enum")),
+          choiceValues(n.find("enumvalues")), advanced(n.find("uiadvanced")), unit(n.find("unit")),
+          unitType(n.find("unittype")), colorspace(n.find("colorspace")) {}
+    Name name, folder, min, max, softMin, softMax, step, choices, choiceValues, advanced, unit, unitType, colorspace;
+};
+
+struct Reflector {
+    const ReflectionSource& from;
+    Shader& shader;
+    const doc::Document& d = from.document;
+    UiAttributes attributes{d.names()};
+    std::unordered_map<Name, std::size_t> firstOf{};  // of a uniform's readings in `authored`
+
+    void run() {
+        for (std::size_t i = 0; i < from.authored.size(); i++)
+            if (Name uniform = from.authored[i].uniform) firstOf.emplace(uniform, i);
+        predefined();
+        for (Name name : from.interface.pixelUniforms.uniforms)
+            if (const Uniform* u = from.module.uniform(name)) u->type == Type::Texture2D ? texture(*u) : live(*u);
+        regenerated();
+        for (const passes::VertexInput& in : from.interface.inputs)
+            shader.inputs.push_back({from.spelled.at(in.name), in.type});
+    }
+
+    void predefined() {
+        const passes::StageUniforms &vertex = from.interface.vertexUniforms, &pixel = from.interface.pixelUniforms;
+        shader.uniforms.reserve(vertex.contexts.size() + pixel.contexts.size() + pixel.uniforms.size());
+        for (int i = 0; i < kContexts; i++) {
+            Context c = static_cast<Context>(i);
+            bool inVertex = holds(vertex.contexts, c), inPixel = holds(pixel.contexts, c);
+            if (!inVertex && !inPixel) continue;
+            UniformBinding& u = shader.uniforms.emplace_back();
+            u.name = info(c).host;
+            u.type = info(c).type;
+            u.semantic = info(c).name;
+            u.value = passes::defaultOf(c);
+            u.isVertex = inVertex;
+            u.isPixel = inPixel;
+        }
+    }
+
+    void live(const Uniform& from_) {
+        UniformBinding& u = shader.uniforms.emplace_back();
+        u.name = from.spelled.at(from_.name);
+        u.type = from_.type;
+        u.value = from_.values;
+        u.path = from_.path;
+        u.isPixel = true;
+        describe(from_.name, u.name, u);
+    }
+
+    void texture(const Uniform& u) {
+        TextureBinding& t = shader.textures.emplace_back();
+        t.uniform = from.spelled.at(u.name);
+        t.file = u.file;
+        t.uAddress = u.uAddress;
+        t.vAddress = u.vAddress;
+        t.filter = u.filter;
+        t.defaultColor = u.defaultColor;
+        t.path = u.path;
+        t.colorspace = u.colorspace;
+        describe(u.name, t.uniform, t);
+    }
+
+    // What the document and the nodedef say of a uniform's value; names that MaterialX gives it.
+    void describe(Name uniform, const std::string& spelled, ValueDescription& to) {
+        auto first = firstOf.find(uniform);
+        if (first == firstOf.end()) return;
+        const graph::Authored& a = from.authored[first->second];
+        describe(a, to);
+        if (d[a.element].parent == a.reader) {
+            alias(a, spelled, to);
+        } else {
+            for (std::size_t i = first->second; i < from.authored.size(); i++)
+                if (from.authored[i].uniform == uniform) alias(from.authored[i], spelled, to);
+        }
+    }
+
+    void alias(const graph::Authored& a, const std::string& spelled, ValueDescription& to) {
+        std::string name(d.text(d[a.reader].name));
+        name.append(1, '_').append(d.text(a.port->name));
+        if (name != spelled) to.aliases.push_back(std::move(name));
+    }
+
+    // The nodedef's attributes, in place of them those of the document's own element.
+    void describe(const graph::Authored& a, ValueDescription& to) {
+        doc::ElementRef port = from.definitions.element(a.def, *a.port);
+        for (const doc::Attribute& x : port.document->attributes(port.id)) describe(x, to);
+        for (const doc::Attribute& x : d.attributes(a.element)) describe(x, to);
+    }
+
+    void describe(const doc::Attribute& x, ValueDescription& to) {
+        const UiAttributes& k = attributes;
+        UiHints& ui = to.ui;
+        const std::pair<Name, std::string*> texts[] = {
+            {k.name, &ui.name},       {k.folder, &ui.folder},        {k.min, &ui.min},
+            {k.max, &ui.max},         {k.softMin, &ui.softMin},      {k.softMax, &ui.softMax},
+            {k.step, &ui.step},       {k.choices, &ui.choices},      {k.choiceValues, &ui.choiceValues},
+            {k.unit, &to.unit},       {k.unitType, &to.unitType},    {k.colorspace, &to.colorspace},
+        };
+        for (const auto& [name, text] : texts)
+            if (x.name == name) *text = d.text(x.value);
+        if (x.name == k.advanced) ui.isAdvanced = d.text(x.value) == "true";
+    }
+
+    // Values of the program itself, each once however many nodes read it.
+    void regenerated() {
+        std::unordered_set<doc::ElementId> seen;
+        for (const graph::Authored& a : from.authored) {
+            if (a.uniform && !from.baked.count(a.uniform)) continue;
+            if (!seen.insert(a.element).second) continue;
+            FixedValue& v = shader.regenerate.emplace_back();
+            v.path = d.path(a.element);
+            v.type = typeNamed(d.text(a.port->type));
+            std::string_view text = d.attributeText(a.element, d.known().value);
+            v.value = graph::wordsOf(v.type, text);
+            if (v.value.empty()) v.text = text;
+            describe(a, v);
+        }
+    }
+};
+
+void writeValue(JsonWriter& json, Type type, std::span<const std::uint32_t> words) {
+    auto number = [&](std::uint32_t w) {
         switch (info(type).scalar) {
             case Scalar::Boolean:
-                return w != 0;
+                return json.boolean(w != 0);
             case Scalar::Integer:
-                return static_cast<int>(w);
+                return json.integer(static_cast<int>(w));
             case Scalar::Float:
-                return std::bit_cast<float>(w);
+                return json.number(std::bit_cast<float>(w));
             case Scalar::None:
-                break;
+                return json.null();
         }
-        return nullptr;
     };
     if (words.size() == 1) return number(words[0]);
-    Json values = Json::array();
-    for (std::uint32_t w : words) values.push_back(number(w));
-    return values;
+    json.openShortArray();
+    for (std::uint32_t w : words) number(w);
+    json.closeArray();
 }
 
-static bool holds(const std::vector<Context>& list, Context c) {
-    for (Context x : list)
-        if (x == c) return true;
-    return false;
-}
-
-static Json stagesOf(bool vertex, bool pixel) {
-    Json stages = Json::array();
-    if (vertex) stages.push_back("vertex");
-    if (pixel) stages.push_back("pixel");
-    return stages;
-}
-
-std::string reflect(const Module& module, const passes::ShaderInterface& interface, std::string_view element,
-                    const std::unordered_map<Name, std::string>& spelled, std::string_view output) {
-    Json uniforms = Json::array(), samplers = Json::array(), inputs = Json::array();
-    auto text = [&](Name n) { return spelled.at(n); };
-    for (int i = 0; i < kContexts; i++) {
-        Context c = static_cast<Context>(i);
-        bool vertex = holds(interface.vertexUniforms.contexts, c), pixel = holds(interface.pixelUniforms.contexts, c);
-        if (!vertex && !pixel) continue;
-        if (info(c).type == Type::Texture2D)
-            samplers.push_back({{"name", info(c).host}, {"kind", "predefined"}});
-        else
-            uniforms.push_back({{"name", info(c).host},
-                                {"type", info(info(c).type).name},
-                                {"value", valueOf(info(c).type, passes::defaultOf(c))},
-                                {"kind", "predefined"},
-                                {"stages", stagesOf(vertex, pixel)}});
+// Numbers as they are written, a list of them where there is a comma; a text that is none stays one.
+void writeRange(JsonWriter& json, std::string_view name, std::string_view text) {
+    if (text.empty()) return;
+    std::vector<float> numbers;
+    for (std::size_t at = 0; at <= text.size();) {
+        std::size_t end = std::min(text.find(',', at), text.size());
+        std::optional<float> number = parseFloat(text.substr(at, end - at));
+        if (!number) return json.member(name, text);
+        numbers.push_back(*number);
+        at = end + 1;
     }
-    for (Name name : interface.pixelUniforms.uniforms)
-        if (const Uniform* known = module.uniform(name)) {
-            const Uniform& u = *known;
-            if (u.type != Type::Texture2D) {
-                uniforms.push_back({{"name", text(u.name)},
-                                    {"type", info(u.type).name},
-                                    {"value", valueOf(u.type, u.values)},
-                                    {"kind", "live"},
-                                    {"path", u.path},
-                                    {"stages", stagesOf(false, true)}});
-                continue;
+    json.key(name);
+    if (numbers.size() == 1) return json.number(numbers[0]);
+    json.openShortArray();
+    for (float n : numbers) json.number(n);
+    json.closeArray();
+}
+
+void writeList(JsonWriter& json, std::string_view name, std::string_view text) {
+    if (text.empty()) return;
+    json.key(name);
+    json.openShortArray();
+    for (std::size_t at = 0; at <= text.size();) {
+        std::size_t end = std::min(text.find(',', at), text.size());
+        json.text(trim(text.substr(at, end - at)));
+        at = end + 1;
+    }
+    json.closeArray();
+}
+
+void writeDescription(JsonWriter& json, const ValueDescription& v) {
+    json.member("colorspace", v.colorspace);
+    json.member("unit", v.unit);
+    json.member("unittype", v.unitType);
+    if (!v.aliases.empty()) {
+        json.key("aliases");
+        json.openShortArray();
+        for (const std::string& alias : v.aliases) json.text(alias);
+        json.closeArray();
+    }
+    json.member("uiname", v.ui.name);
+    json.member("uifolder", v.ui.folder);
+    writeRange(json, "uimin", v.ui.min);
+    writeRange(json, "uimax", v.ui.max);
+    writeRange(json, "uisoftmin", v.ui.softMin);
+    writeRange(json, "uisoftmax", v.ui.softMax);
+    writeRange(json, "uistep", v.ui.step);
+    writeList(json, "enum", v.ui.choices);
+    writeList(json, "enumvalues", v.ui.choiceValues);
+    if (v.ui.isAdvanced) {
+        json.key("uiadvanced");
+        json.boolean(true);
+    }
+}
+
+void writeUniform(JsonWriter& json, const UniformBinding& u) {
+    json.openShortObject();
+    json.member("name", u.name);
+    json.member("type", info(u.type).name);
+    json.key("value");
+    writeValue(json, u.type, u.value);
+    json.member("kind", u.semantic.empty() ? "live" : "predefined");
+    json.member("semantic", u.semantic);
+    json.member("path", u.path);
+    json.key("stages");
+    json.openShortArray();
+    if (u.isVertex) json.text("vertex");
+    if (u.isPixel) json.text("pixel");
+    json.closeArray();
+    writeDescription(json, u);
+    json.closeObject();
+}
+
+void writeTexture(JsonWriter& json, const TextureBinding& t) {
+    json.openShortObject();
+    json.member("name", t.uniform);
+    json.member("kind", "texture");
+    json.member("path", t.path);
+    json.key("file");
+    json.text(t.file);
+    json.member("uaddressmode", t.uAddress);
+    json.member("vaddressmode", t.vAddress);
+    json.member("filtertype", t.filter);
+    if (!t.defaultColor.empty()) {
+        json.key("default");
+        json.openShortArray();
+        for (float c : t.defaultColor) json.number(c);
+        json.closeArray();
+    }
+    writeDescription(json, t);
+    json.closeObject();
+}
+
+void writeFixed(JsonWriter& json, const FixedValue& v) {
+    json.openShortObject();
+    json.member("path", v.path);
+    json.member("type", info(v.type).name);
+    json.key("value");
+    v.value.empty() ? json.text(v.text) : writeValue(json, v.type, v.value);
+    writeDescription(json, v);
+    json.closeObject();
+}
+
+}  // namespace
+
+void reflect(const ReflectionSource& from, Shader& shader) { Reflector{from, shader}.run(); }
+
+std::string Shader::reflection() const {
+    JsonWriter json;
+    auto list = [&](std::string_view name, auto&& write) {
+        json.key(name);
+        json.openArray();
+        write();
+        json.closeArray();
+    };
+    json.openObject();
+    json.member("element", element);
+    json.key("topology");
+    json.text(fmt::format("{:016x}", topology));
+    json.key("output");
+    json.openShortObject();
+    json.member("name", output);
+    json.member("type", "vector4");
+    json.closeObject();
+    list("uniforms", [&] {
+        for (const UniformBinding& u : uniforms)
+            if (u.type != Type::Texture2D) writeUniform(json, u);
+    });
+    list("regenerate", [&] {
+        for (const FixedValue& v : regenerate) writeFixed(json, v);
+    });
+    list("samplers", [&] {
+        // The maps of the environment close around it, from pole to pole.
+        for (const UniformBinding& u : uniforms)
+            if (u.type == Type::Texture2D) {
+                json.openShortObject();
+                json.member("name", u.name);
+                json.member("kind", "predefined");
+                json.member("semantic", u.semantic);
+                json.member("uaddressmode", "periodic");
+                json.member("vaddressmode", "clamp");
+                json.member("filtertype", "linear");
+                json.closeObject();
             }
-            Json s = {{"name", text(u.name)},  {"kind", "texture"},          {"path", u.path},
-                      {"file", u.file},        {"uaddressmode", u.uAddress}, {"vaddressmode", u.vAddress},
-                      {"filtertype", u.filter}};
-            if (!u.colorspace.empty()) s["colorspace"] = u.colorspace;
-            if (!u.defaultColor.empty()) s["default"] = u.defaultColor;
-            samplers.push_back(std::move(s));
+        for (const TextureBinding& t : textures) writeTexture(json, t);
+    });
+    list("inputs", [&] {
+        for (const VertexInputBinding& in : inputs) {
+            json.openShortObject();
+            json.member("name", in.name);
+            json.member("type", info(in.type).name);
+            json.member("semantic", std::string_view(in.name).substr(std::min<std::size_t>(2, in.name.size())));
+            json.closeObject();
         }
-    for (const passes::VertexInput& in : interface.inputs)
-        inputs.push_back({{"name", text(in.name)}, {"type", info(in.type).name}});
-    Json all = {{"element", std::string(element)},
-                {"output", {{"name", std::string(output)}, {"type", "vector4"}}},
-                {"uniforms", std::move(uniforms)},
-                {"samplers", std::move(samplers)},
-                {"inputs", std::move(inputs)}};
-    return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    });
+    json.closeObject();
+    return json.take();
+}
+
+// Multiplies and folds eight bytes a step, read as little-endian numbers.
+std::uint64_t stableHash(std::string_view text, std::uint64_t seed) {
+    std::uint64_t h = seed ^ (text.size() * 0x9e3779b97f4a7c15u);
+    auto mix = [&](std::uint64_t word) {
+        h = (h ^ word) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 32;
+    };
+    std::size_t i = 0;
+    for (; i + 8 <= text.size(); i += 8) {
+        std::uint64_t word = 0;
+        for (std::size_t k = 0; k < 8; k++) word |= std::uint64_t(static_cast<unsigned char>(text[i + k])) << 8 * k;
+        mix(word);
+    }
+    std::uint64_t rest = 0;
+    for (std::size_t k = 0; i + k < text.size(); k++)
+        rest |= std::uint64_t(static_cast<unsigned char>(text[i + k])) << 8 * k;
+    mix(rest);
+    return h;
 }
 
 }  // namespace shaderx

@@ -1,18 +1,30 @@
-// What an application needs to know of a generated shader to bind it, as JSON.
+// What an application needs to know of a generated shader to bind and to edit it.
 #pragma once
 
+#include <span>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 
-#include "ir/module.h"
-#include "passes/stages.h"
+#include "compile/compile.h"
 
 namespace shaderx {
 
-// An object with `element`, `output`, `uniforms` (name, type, default value, document path, kind, stages), `samplers`
-// (name, document path, file, address and filter modes, colour space) and `inputs` of the vertex stage.
-// `spelled` gives the names as the texts have them, by their names in the module.
-std::string reflect(const ir::Module& module, const passes::ShaderInterface& interface, std::string_view element,
-                    const std::unordered_map<Name, std::string>& spelled, std::string_view output);
+// Where the description of a shader comes from.
+struct ReflectionSource {
+    const ir::Module& module;
+    const passes::ShaderInterface& interface;
+    const doc::Document& document;
+    const doc::Definitions& definitions;
+    std::span<const graph::Authored> authored;            // as `lower` gives it
+    const std::unordered_set<Name>& baked;                // uniforms that decide topology
+    const std::unordered_map<Name, std::string>& spelled;  // names as the texts have them, by those in the module
+};
+
+// Fills in everything of the shader but its element, texts, hash and program.
+void reflect(const ReflectionSource& from, Shader& shader);
+
+// A hash of texts, the same in every run and on every machine.
+std::uint64_t stableHash(std::string_view text, std::uint64_t seed = 0);
 
 }  // namespace shaderx

@@ -176,7 +176,7 @@ struct Lowerer {
     }
 
     ExprId written(doc::ElementId element, Type type, const Input* input, const Node* owner) {
-        if (type == Type::Texture2D) return texture(element, owner);
+        if (type == Type::Texture2D) return texture(element, input, owner);
         const Name given = d.attribute(element, d.known().value);
         std::string problem = "there is none";
         ExprId value;
@@ -186,10 +186,17 @@ struct Lowerer {
             error(element, "bad-value", fmt::format("bad value of type {}: {}", info(type).name, problem));
             return {};
         }
-        if (isLive(type, input, owner)) value = uniform(element, type);
+        bool live = isLive(type, input, owner);
+        if (live) value = uniform(element, type);
+        if (options.interface != Interface::Baked) record(live ? uniformOf[element] : Name(), element, input, owner);
         if (type == Type::Color3 || type == Type::Color4)
             if (Name space = d.attribute(element, colorspace)) value = transformed(value, space, element);
         return value;
+    }
+
+    void record(Name uniform, doc::ElementId element, const Input* input, const Node* reader) {
+        if (options.authored && input)
+            options.authored->push_back({uniform, element, reader->element, reader->def, input->port});
     }
 
     // Values that may change without a new shader: numbers, but for counts and choices that a nodedef says are fixed.
@@ -230,14 +237,20 @@ struct Lowerer {
         return b.uniform(addUniform(element, type).name, type);
     }
 
-    ExprId texture(doc::ElementId element, const Node* reader) {
-        if (auto it = uniformOf.find(element); it != uniformOf.end()) return b.uniform(it->second, Type::Texture2D);
+    ExprId texture(doc::ElementId element, const Input* input, const Node* reader) {
+        auto it = uniformOf.find(element);
+        if (it == uniformOf.end()) it = uniformOf.emplace(element, newTexture(element, reader)).first;
+        record(it->second, element, input, reader);
+        return b.uniform(it->second, Type::Texture2D);
+    }
+
+    Name newTexture(doc::ElementId element, const Node* reader) {
         Uniform& u = addUniform(element, Type::Texture2D);
         std::string_view prefix = d.text(d.inherited(element, fileprefix));
         u.file = std::string(prefix) + std::string(d.attributeText(element, d.known().value));
         u.colorspace = d.text(d.inherited(element, colorspace));
         if (reader) readHints(u, *reader);
-        return b.uniform(u.name, Type::Texture2D);
+        return u.name;
     }
 
     // How the node that reads the texture wants it read.

@@ -32,9 +32,19 @@ class Bodies {
     virtual doc::NodeDef nodeFor(std::string_view category, ir::Type type) = 0;
 };
 
+// A value of the document that a node reads, and what became of it. A port of a nodegraph has one for each reader.
+struct Authored {
+    Name uniform;            // none: the value is part of the program
+    doc::ElementId element;  // the input that holds it
+    doc::ElementId reader;
+    doc::NodeDef def;  // of the reader, and its input
+    const doc::Port* port = nullptr;
+};
+
 struct LowerOptions {
     Interface interface = Interface::Baked;
     std::string_view targetColorSpace = "lin_rec709";
+    std::vector<Authored>* authored = nullptr;  // gets what may be changed without editing the graph, where asked for
 };
 
 // Appends the graph as the function `name` to the module: one result for each of the graph's outputs (only the first

@@ -74,7 +74,7 @@ class Golden : public testing::TestWithParam<fs::path> {
         std::string stem = GetParam().stem().string() + "." + fileNameOf(shader->element) + "." + interface;
         expectOne(stem + ".vert", shader->vertex);
         expectOne(stem + ".frag", shader->pixel);
-        expectOne(stem + ".json", shader->reflection);
+        expectOne(stem + ".json", shader->reflection());
         if (haveValidator()) expectCompiles(stem, *shader);
     }
 

@@ -47,7 +47,7 @@ TEST(Walk, EveryStageIsAsExpected) {
     }
     expectFile(folder / "10_print.vert", shader->vertex);
     expectFile(folder / "10_print.frag", shader->pixel);
-    expectFile(folder / "10_print.json", shader->reflection);
+    expectFile(folder / "10_print.json", shader->reflection());
 }
 
 TEST(Walk, EveryProgramReadsBack) {

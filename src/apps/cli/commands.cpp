@@ -128,7 +128,7 @@ struct Session {
             std::string base = (std::filesystem::path(options.out) / stem).string();
             bool ok = writeFile(base + ".vert", shader.vertex, diagnostics) &&
                       writeFile(base + ".frag", shader.pixel, diagnostics) &&
-                      writeFile(base + ".json", shader.reflection, diagnostics);
+                      writeFile(base + ".json", shader.reflection(), diagnostics);
             if (!ok)
                 for (const char* end : {".vert", ".frag", ".json"}) std::remove((base + end).c_str());
         }

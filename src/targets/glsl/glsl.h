@@ -3,6 +3,8 @@
 
 #include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "ir/module.h"
@@ -19,6 +21,8 @@ struct Sources {
     // How the texts spell what hosts bind: uniforms and vertex inputs, by their names in the module.
     std::unordered_map<Name, std::string> names;
     std::string output;  // of the pixel stage
+    // Parts of the pixel text, first and past the last byte, that are no code: the title, and defaults of live values.
+    std::vector<std::pair<std::size_t, std::size_t>> apart;
 };
 
 // Prints a legalised and placed module. What it cannot print is an internal error: that is the work of legalise.

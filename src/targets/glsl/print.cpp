@@ -286,8 +286,11 @@ void uniforms(Stage& stage, const passes::StageUniforms& used) {
     if (!used.contexts.empty() && !used.uniforms.empty()) stage.out.line();
     for (Name name : used.uniforms)
         if (const Uniform* u = stage.module.uniform(name)) {
-            stage.globals[name] = stage.namer.global(stage.module.names->text(name));
-            uniformLine(stage, u->type, stage.globals[name], u->values);
+            std::size_t start = stage.out.size();
+            std::string& spelled = stage.globals[name] = stage.namer.global(stage.module.names->text(name));
+            uniformLine(stage, u->type, spelled, u->values);
+            std::size_t value = std::string_view("uniform ").size() + typeName(u->type).size() + 1 + spelled.size();
+            if (!u->values.empty()) stage.apart.emplace_back(start + value, stage.out.size());
         }
     if (!used.contexts.empty() || !used.uniforms.empty()) stage.out.line();
 }
@@ -326,7 +329,9 @@ void pixelStage(const Module& module, const passes::ShaderInterface& interface, 
     stage.out.line("#version 400");
     stage.out.line();
     if (!title.empty()) {
+        std::size_t start = stage.out.size();
         stage.out.comment(title);
+        stage.apart.emplace_back(start, stage.out.size());
         stage.out.line();
     }
     uniforms(stage, interface.pixelUniforms);
@@ -348,6 +353,7 @@ void pixelStage(const Module& module, const passes::ShaderInterface& interface, 
     FunctionPrinter(stage, entry, true).print();
     sources.pixel = stage.out.take();
     sources.output = stage.output;
+    sources.apart = std::move(stage.apart);
     for (Name name : interface.pixelUniforms.uniforms) sources.names[name] = stage.globals.at(name);
 }
 

@@ -23,6 +23,7 @@ struct Stage {
     std::unordered_map<Name, std::string> inputs{};   // of the vertex stage, by the names in the interface
     std::unordered_map<Name, std::string> members{};  // of the block VertexData, by the names of the varyings
     std::string output{};                             // of the pixel stage
+    std::vector<std::pair<std::size_t, std::size_t>> apart{};  // see Sources
 };
 
 // The text of constants: 0.5, vec3(0.8), mat3(…).

@@ -38,6 +38,7 @@ class Writer {
     // The first of some sentences: what a reader of generated text wants to know of a function.
     static std::string_view firstSentence(std::string_view sentences);
     std::string take() { return std::move(out_); }
+    std::size_t size() const { return out_.size(); }
     int depth() const { return depth_; }
 
   private:

@@ -1,0 +1,54 @@
+// Writes JSON text: objects of a list one a line, numbers as short as they can be.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace shaderx {
+
+// The caller keeps the grammar; the writer puts commas, quotes and line ends.
+class JsonWriter {
+  public:
+    JsonWriter() { out_.reserve(4096); }
+    // The document itself, and what is spread over lines: a member or element a line.
+    void openObject() { open('{', true); }
+    void openArray() { open('[', true); }
+    // What stays on one line.
+    void openShortObject() { open('{', false); }
+    void openShortArray() { open('[', false); }
+    void closeObject() { close('}'); }
+    void closeArray() { close(']'); }
+
+    void key(std::string_view name);    // plain letters
+    void text(std::string_view value);  // bytes that are no UTF-8 become U+FFFD
+    void boolean(bool value) { word(value ? "true" : "false"); }
+    void integer(std::int64_t value);
+    void number(float value);  // null where it is none
+    void null() { word("null"); }
+    // A member whose value is a text; none where it is empty.
+    void member(std::string_view name, std::string_view value) {
+        if (value.empty()) return;
+        key(name);
+        text(value);
+    }
+
+    std::string take() { return std::move(out_); }
+
+  private:
+    void open(char bracket, bool lines);
+    void close(char bracket);
+    void begin();
+    void word(std::string_view text) {
+        begin();
+        out_ += text;
+    }
+    void quoted(std::string_view text);
+
+    std::string out_;
+    std::uint64_t lines_ = 0;  // bit of a depth: its members stand on lines of their own
+    int depth_ = 0;            // at most 63
+    bool first_ = true, keyed_ = false;
+};
+
+}  // namespace shaderx
