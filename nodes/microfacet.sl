@@ -172,6 +172,33 @@ color microfacet_refraction(vector2 roughness, float ior, vector N, vector V, ve
     return radiance;
 }
 
+// Where the host has blurred the levels of its map for a roughness: the level that hosts agreed on, whose blur grows as
+// the root of the roughness at first.
+float microfacet_blurred(float alpha)
+{
+    return (alpha < 0.25 ? sqrt(alpha) : 0.5 * alpha + 0.375) * (environment_mips - 1);
+}
+
+// Stands in for microfacet_light where maps are prefiltered: the light from where a mirror, or one ray through the
+// sphere, leads the view; of a reflection times the directional albedo, by the fits.
+void microfacet_light_prefiltered(vector2 roughness, boolean refracts, boolean retroreflective, boolean clear,
+                                  float ior, color base, color rise, color bend, color dip, float exponent, vector N,
+                                  vector V, vector X, output color radiance, output color albedo)
+{
+    float NV = clamp(dot(N, V), 0.0001, 1.0);
+    float mean = microfacet_mean(roughness);
+    vector L = retroreflective ? V : reflect(-V, N);
+    albedo = color(1.0);
+    if (refracts)
+        L = reflect(V, refract(-V, N, 1.0 / ior));
+    else
+    {
+        color once = microfacet_fresnel(clear, ior, base, rise, bend, dip, exponent, microfacet_cosine(NV, mean));
+        albedo = once * mix(once, color(1.0), microfacet_white(NV, mean));
+    }
+    radiance = albedo * environment_lookup(environment_radiance, environment_direction(L), microfacet_blurred(mean));
+}
+
 // Density D of the half vector H under GGX. Where there is one roughness, the sine comes from a cross product: taken
 // from the cosine it would lose all digits on a smooth surface.
 float microfacet_density(vector2 roughness, vector N, vector V, vector X, vector H)

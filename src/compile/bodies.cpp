@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
 #include "ir/builder.h"
 #include "passes/specialise.h"
 
@@ -201,6 +202,16 @@ doc::NodeDef NodeBodies::colorTransform(std::string_view from, std::string_view 
         return space == "lin_rec709_scene" ? std::string_view("lin_rec709") : space;
     };
     return nodeFor(fmt::format("{}_to_{}", plain(from), plain(to)), type);
+}
+
+float NodeBodies::unitScale(std::string_view type, std::string_view unit) {
+    Name definition = names_.find("unitdef"), unitType = names_.find("unittype"), scale = names_.find("scale");
+    for (const doc::Document* d : documents_)
+        for (doc::ElementId e : doc::children(*d, d->root())) {
+            if ((*d)[e].category != definition || d->attributeText(e, unitType) != type) continue;
+            if (doc::ElementId found = d->child(e, unit)) return parseFloat(d->attributeText(found, scale)).value_or(0);
+        }
+    return 0;
 }
 
 doc::ElementRef NodeBodies::geometricProperty(Name name) {

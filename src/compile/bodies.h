@@ -23,6 +23,7 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     // Before another program.
     void forgetNames() { uniformNames_.clear(); }
     doc::NodeDef colorTransform(std::string_view from, std::string_view to, ir::Type type) override;
+    float unitScale(std::string_view type, std::string_view unit) override;
     doc::ElementRef geometricProperty(Name name) override;
     doc::NodeDef nodeFor(std::string_view category, ir::Type type) override;
 

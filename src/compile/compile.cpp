@@ -16,6 +16,7 @@
 #include "ir/text.h"
 #include "ir/validate.h"
 #include "passes/expand.h"
+#include "passes/flip.h"
 #include "passes/gather.h"
 #include "passes/place.h"
 #include "passes/prune.h"
@@ -121,6 +122,20 @@ std::vector<doc::ElementId> Compiler::renderableElements(const doc::Document& do
 
 namespace {
 
+// Functions of the library that stand in for others where the environment's maps are prefiltered: F_prefiltered for F.
+class Prefiltered final : public ir::FunctionSource {
+  public:
+    Prefiltered(NameTable& names, const ir::Module& module) : names_(names), module_(module) {}
+    const ir::Function* find(Name name) override {
+        Name other = names_.find(std::string(names_.text(name)) + "_prefiltered");
+        return other ? module_.find(other) : nullptr;
+    }
+
+  private:
+    NameTable& names_;
+    const ir::Module& module_;
+};
+
 // One element on its way to a shader. The stages in the order in which they run.
 struct Compilation {
     const doc::Document& document;
@@ -136,16 +151,34 @@ struct Compilation {
     passes::ShaderInterface interface{};
     std::vector<graph::Authored> authored{};
     std::unordered_set<Name> baked{};  // uniforms that decide topology
+    bool traces = false;               // whether expressions say from which node they come
     Name pixel = names.intern("@pixel"), vertex = names.intern("@vertex");
 
     bool run(Shader& shader) {
         dumpDocument();
         if (!makeGraph() || !lower() || !specialise() || !shade()) return false;
         interface = passes::makeStages(module, pixel, vertex);
+        interface.usesBlocks = options.blocks;
+        interface.bindingBase = options.bindingBase;
         dump(StageName::Interface);
         legalise();
         place();
         print(shader);
+        return true;
+    }
+
+    // With all values of the document as uniforms, nothing is removed yet.
+    bool findLobes(std::vector<passes::Lobe>& lobes) {
+        traces = true;
+        if (!makeGraph() || !lower() || !passes::specialise(module, pixel, {}, made, diagnostics)) return false;
+        lobes = passes::lobesOf(module, pixel);
+        return true;
+    }
+
+    bool findCosts(std::vector<passes::NodeCost>& costs) {
+        traces = true;
+        if (!makeGraph() || !lower() || !specialise() || !shade()) return false;
+        costs = passes::costsByNode(module, pixel);
         return true;
     }
 
@@ -217,6 +250,12 @@ struct Compilation {
         graph::LowerOptions how;
         how.interface = options.interface;
         how.authored = &authored;
+        how.traces = traces;
+        if (options.unit != how.distanceUnit && !bodies.unitScale("distance", options.unit)) {
+            diagnostics.error("unknown-scene-unit", fmt::format("there is no unit of distance '{}'", options.unit));
+            return false;
+        }
+        how.distanceUnit = options.unit;
         std::string_view space = document.attributeText(document.root(), document.known().colorspace);
         if (!space.empty()) how.targetColorSpace = space;
         bool ok = graph::lower(graph, definitions, bodies, {}, pixel, how, module, diagnostics);
@@ -244,6 +283,8 @@ struct Compilation {
         bool isShader = ir::isClosure(graph.outputs[0].type);
         Name output = names.intern(isShader || port == "out" || port.empty() ? "out1" : port);
         passes::ShadeOptions how;
+        how.environment = options.environment != EnvironmentLight::None;
+        how.transparency = options.transparency;
         how.skipsUnused = options.interface == Interface::Complete;
         if (!passes::shade(module, pixel, output, how, diagnostics)) return false;
         if (how.skipsUnused) {
@@ -253,6 +294,7 @@ struct Compilation {
         if (!passes::specialise(module, pixel, {}, made, diagnostics)) return false;
         passes::expandCalledOnce(module, pixel);
         passes::prune(module, std::array{pixel});
+        if (options.flipV) passes::flipTextures(module);
         dump(StageName::Shade);
         return true;
     }
@@ -295,30 +337,45 @@ struct Compilation {
 
 }  // namespace
 
+// A document's bodies and what was specialised of them, from one element to the next.
+struct Compiler::Batch {
+    std::optional<doc::Definitions> definitions{};
+    std::optional<NodeBodies> bodies{};
+    passes::Specialisations made{};
+};
+
+template <class Run>
+bool Compiler::compile(Batch& batch, const doc::Document& document, doc::ElementId element,
+                       const GenerateOptions& options, Diagnostics& diagnostics, Run&& run) {
+    auto& [definitions, bodies, made] = batch;
+    return guarded(diagnostics, fmt::format("generating '{}'", document.path(element)), [&] {
+        if (!definitions) definitions = state_->definitions(document);
+        // Uniforms inside of bodies have taken names that another element may want.
+        if (bodies && !bodies->made().uniforms.empty()) {
+            bodies.reset();
+            made.clear();
+        }
+        if (!bodies) bodies.emplace(state_->names, *definitions, state_->libraries()).addDocument(document);
+        bodies->forgetNames();
+        Compilation c{document,    element,       options,
+                      diagnostics, state_->names, *definitions,
+                      *bodies,     made,          ir::Module(state_->names)};
+        Prefiltered prefiltered(state_->names, c.module);
+        if (options.environment != EnvironmentLight::Samples) c.module.sources.push_back(&prefiltered);
+        c.module.sources.push_back(&*bodies);
+        for (Library* l : state_->libraries()) c.module.sources.push_back(l);
+        return run(c);
+    });
+}
+
 void Compiler::generate(const doc::Document& document, std::span<const doc::ElementId> elements,
                         const GenerateOptions& options, const Done& done) {
-    std::optional<doc::Definitions> definitions;
-    std::optional<NodeBodies> bodies;
-    passes::Specialisations made;
+    Batch batch;
     for (doc::ElementId element : elements) {
         Shader shader;
         Diagnostics diagnostics;
-        bool ok = guarded(diagnostics, fmt::format("generating '{}'", document.path(element)), [&] {
-            if (!definitions) definitions = state_->definitions(document);
-            // Uniforms inside of bodies have taken names that another element may want.
-            if (bodies && !bodies->made().uniforms.empty()) {
-                bodies.reset();
-                made.clear();
-            }
-            if (!bodies) bodies.emplace(state_->names, *definitions, state_->libraries()).addDocument(document);
-            bodies->forgetNames();
-            Compilation c{document,    element,       options,
-                          diagnostics, state_->names, *definitions,
-                          *bodies,     made,          ir::Module(state_->names)};
-            c.module.sources.push_back(&*bodies);
-            for (Library* l : state_->libraries()) c.module.sources.push_back(l);
-            return c.run(shader);
-        });
+        bool ok =
+            compile(batch, document, element, options, diagnostics, [&](Compilation& c) { return c.run(shader); });
         done(element, ok ? Result<Shader>(std::move(shader)) : Failure{}, diagnostics);
     }
 }
@@ -332,6 +389,26 @@ Result<Shader> Compiler::generate(const doc::Document& document, doc::ElementId 
                  made = std::move(shader);
              });
     return made;
+}
+
+Result<std::vector<passes::Lobe>> Compiler::lobes(const doc::Document& document, doc::ElementId element,
+                                                  const GenerateOptions& options, Diagnostics& diagnostics) {
+    std::vector<passes::Lobe> lobes;
+    GenerateOptions all = options;
+    all.interface = Interface::Complete;
+    Batch batch;
+    if (!compile(batch, document, element, all, diagnostics, [&](Compilation& c) { return c.findLobes(lobes); }))
+        return Failure{};
+    return lobes;
+}
+
+Result<std::vector<passes::NodeCost>> Compiler::costs(const doc::Document& document, doc::ElementId element,
+                                                      const GenerateOptions& options, Diagnostics& diagnostics) {
+    std::vector<passes::NodeCost> costs;
+    Batch batch;
+    if (!compile(batch, document, element, options, diagnostics, [&](Compilation& c) { return c.findCosts(costs); }))
+        return Failure{};
+    return costs;
 }
 
 std::vector<std::uint8_t> packLibrary(std::vector<LibraryFile> files, Diagnostics& diagnostics) {

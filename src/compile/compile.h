@@ -29,6 +29,8 @@
 #include "doc/document.h"
 #include "doc/read.h"
 #include "graph/lower.h"
+#include "passes/cost.h"
+#include "passes/lobes.h"
 #include "passes/stages.h"
 
 namespace shaderx {
@@ -51,12 +53,26 @@ class DumpSink {
     virtual void dump(StageName stage, const std::string& text) = 0;
 };
 
+// How the environment lights what is drawn.
+enum class EnvironmentLight : std::uint8_t {
+    Samples,      // u_envRadianceSamples directions a pixel and lobe, importance sampled from mipmaps
+    Prefiltered,  // one look-up a lobe, from a map whose levels the host has blurred
+    None,
+};
+
 struct GenerateOptions {
     Interface interface = Interface::Live;
+    EnvironmentLight environment = EnvironmentLight::Samples;
+    bool flipV = false;         // textures are read at 1 - v, for hosts that load pictures with the top row first
+    bool transparency = false;  // alpha from opacity; below u_alphaThreshold pixels are discarded
+    bool blocks = false;        // uniforms stand in the blocks PrivateUniforms and PublicUniforms, laid out as std140
+    int bindingBase = -1;       // of blocks and samplers, which the text numbers from here on; below 0 it numbers none
+    std::string_view unit = "meter";  // what one unit of distance is in the scene, as a <unitdef> calls it
     DumpSink* dumps = nullptr;
 };
 
-// What a user interface shows of a value: texts as the document or the nodedef writes them, empty where it says nothing.
+// What a user interface shows of a value: texts as the document or the nodedef writes them, empty where it says
+// nothing.
 struct UiHints {
     std::string name, folder;
     std::string min, max, softMin, softMax, step;
@@ -79,6 +95,9 @@ struct UniformBinding : ValueDescription {
     std::string_view semantic;         // what the host is to supply, "view_position"; empty for values of the document
     std::string path;                  // of the input in the document; empty for what the host supplies
     bool isVertex = false, isPixel = false;  // the stages that read it
+    int block = -1;                          // which of Shader::blocks it stands in
+    std::uint32_t offset = 0;                // where in the block, in bytes
+    int binding = -1;                        // of a texture, where the text numbers it
 };
 
 // A value that is part of the program, although the interface is not baked, because it decides what the program
@@ -88,6 +107,14 @@ struct FixedValue : ValueDescription {
     ir::Type type = ir::Type::Float;
     std::vector<std::uint32_t> value;  // its bits
     std::string text;                  // of strings, which have no bits
+};
+
+// A uniform block, laid out as std140.
+struct BlockBinding {
+    std::string name;
+    std::uint32_t size = 0;  // in bytes
+    int binding = -1;        // where the text numbers it
+    bool isVertex = false, isPixel = false;
 };
 
 // An attribute of the vertex stage.
@@ -103,6 +130,7 @@ struct TextureBinding : ValueDescription {
     std::string uAddress, vAddress, filter;
     std::vector<float> defaultColor;
     std::string path;  // of the input in the document
+    int binding = -1;  // where the text numbers it
 };
 
 // The program behind a shader's text, for whoever runs it on the CPU: legalised and placed, the entry functions named
@@ -118,6 +146,7 @@ struct Shader {
     std::string output;          // the variable that the pixel stage writes
     std::uint64_t topology = 0;  // a hash of the texts but for live values, the same in every run and on every machine
     std::vector<UniformBinding> uniforms;
+    std::vector<BlockBinding> blocks;
     std::vector<FixedValue> regenerate;
     std::vector<VertexInputBinding> inputs;
     std::vector<TextureBinding> textures;
@@ -161,7 +190,20 @@ class Compiler {
     void generate(const doc::Document& document, std::span<const doc::ElementId> elements,
                   const GenerateOptions& options, const Done& done);
 
+    // Why the shader of an element is as it is. Which lobes the material has, with which weights, and what removed the
+    // others; none where the element is no material.
+    Result<std::vector<passes::Lobe>> lobes(const doc::Document& document, doc::ElementId element,
+                                            const GenerateOptions& options, Diagnostics& diagnostics);
+    // What each node of the document costs a pixel.
+    Result<std::vector<passes::NodeCost>> costs(const doc::Document& document, doc::ElementId element,
+                                                const GenerateOptions& options, Diagnostics& diagnostics);
+
   private:
+    struct Batch;
+    template <class Run>
+    bool compile(Batch& batch, const doc::Document& document, doc::ElementId element, const GenerateOptions& options,
+                 Diagnostics& diagnostics, Run&& run);
+
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -20,10 +20,19 @@ bool holds(const std::vector<Context>& list, Context c) { return std::find(list.
 // The attributes that say how a value is shown.
 struct UiAttributes {
     explicit UiAttributes(NameTable& n)
-        : name(n.find("uiname")), folder(n.find("uifolder")), min(n.find("uimin")), max(n.find("uimax")),
-          softMin(n.find("uisoftmin")), softMax(n.find("uisoftmax")), step(n.find("uistep")), choices(n.find("enum")),
-          choiceValues(n.find("enumvalues")), advanced(n.find("uiadvanced")), unit(n.find("unit")),
-          unitType(n.find("unittype")), colorspace(n.find("colorspace")) {}
+        : name(n.find("uiname")),
+          folder(n.find("uifolder")),
+          min(n.find("uimin")),
+          max(n.find("uimax")),
+          softMin(n.find("uisoftmin")),
+          softMax(n.find("uisoftmax")),
+          step(n.find("uistep")),
+          choices(n.find("enum")),
+          choiceValues(n.find("enumvalues")),
+          advanced(n.find("uiadvanced")),
+          unit(n.find("unit")),
+          unitType(n.find("unittype")),
+          colorspace(n.find("colorspace")) {}
     Name name, folder, min, max, softMin, softMax, step, choices, choiceValues, advanced, unit, unitType, colorspace;
 };
 
@@ -40,6 +49,8 @@ struct Reflector {
         predefined();
         for (Name name : from.interface.pixelUniforms.uniforms)
             if (const Uniform* u = from.module.uniform(name)) u->type == Type::Texture2D ? texture(*u) : live(*u);
+        if (from.interface.usesBlocks) blocks();
+        if (from.interface.bindingBase >= 0) number();
         regenerated();
         for (const passes::VertexInput& in : from.interface.inputs)
             shader.inputs.push_back({from.spelled.at(in.name), in.type});
@@ -60,6 +71,33 @@ struct Reflector {
             u.isVertex = inVertex;
             u.isPixel = inPixel;
         }
+    }
+
+    // Contexts come before values, in the list as in the blocks.
+    void blocks() {
+        for (bool isPrivate : {true, false}) {
+            BlockBinding block;
+            block.name = isPrivate ? "PrivateUniforms" : "PublicUniforms";
+            for (UniformBinding& u : shader.uniforms) {
+                if (u.type == Type::Texture2D || u.semantic.empty() == isPrivate) continue;
+                u.block = static_cast<int>(shader.blocks.size());
+                u.offset = passes::placeMember(u.type, block.size);
+                block.isVertex = block.isVertex || u.isVertex;
+                block.isPixel = block.isPixel || u.isPixel;
+            }
+            if (!block.size) continue;
+            block.size = (block.size + 15) / 16 * 16;
+            shader.blocks.push_back(std::move(block));
+        }
+    }
+
+    // Blocks, then textures, in the order of the text.
+    void number() {
+        int next = from.interface.bindingBase;
+        for (BlockBinding& block : shader.blocks) block.binding = next++;
+        for (UniformBinding& u : shader.uniforms)
+            if (u.type == Type::Texture2D) u.binding = next++;
+        for (TextureBinding& t : shader.textures) t.binding = next++;
     }
 
     void live(const Uniform& from_) {
@@ -91,7 +129,7 @@ struct Reflector {
         if (first == firstOf.end()) return;
         const graph::Authored& a = from.authored[first->second];
         describe(a, to);
-        if (d[a.element].parent == a.reader) {
+        if (!a.element || d[a.element].parent == a.reader) {
             alias(a, spelled, to);
         } else {
             for (std::size_t i = first->second; i < from.authored.size(); i++)
@@ -109,6 +147,7 @@ struct Reflector {
     void describe(const graph::Authored& a, ValueDescription& to) {
         doc::ElementRef port = from.definitions.element(a.def, *a.port);
         for (const doc::Attribute& x : port.document->attributes(port.id)) describe(x, to);
+        if (!a.element) return;
         for (const doc::Attribute& x : d.attributes(a.element)) describe(x, to);
     }
 
@@ -116,14 +155,20 @@ struct Reflector {
         const UiAttributes& k = attributes;
         UiHints& ui = to.ui;
         const std::pair<Name, std::string*> texts[] = {
-            {k.name, &ui.name},       {k.folder, &ui.folder},        {k.min, &ui.min},
-            {k.max, &ui.max},         {k.softMin, &ui.softMin},      {k.softMax, &ui.softMax},
-            {k.step, &ui.step},       {k.choices, &ui.choices},      {k.choiceValues, &ui.choiceValues},
-            {k.unit, &to.unit},       {k.unitType, &to.unitType},    {k.colorspace, &to.colorspace},
+            {k.name, &ui.name}, {k.folder, &ui.folder},     {k.min, &ui.min},
+            {k.max, &ui.max},   {k.softMin, &ui.softMin},   {k.softMax, &ui.softMax},
+            {k.step, &ui.step}, {k.choices, &ui.choices},   {k.choiceValues, &ui.choiceValues},
+            {k.unit, &to.unit}, {k.unitType, &to.unitType}, {k.colorspace, &to.colorspace},
         };
         for (const auto& [name, text] : texts)
             if (x.name == name) *text = d.text(x.value);
         if (x.name == k.advanced) ui.isAdvanced = d.text(x.value) == "true";
+    }
+
+    // How a texture is read is the business of whoever binds it: reflection says it with the sampler.
+    bool isSampling(const graph::Authored& a) const {
+        std::string_view name = d.text(a.port->name);
+        return name == "uaddressmode" || name == "vaddressmode" || name == "filtertype";
     }
 
     // Values of the program itself, each once however many nodes read it.
@@ -131,7 +176,7 @@ struct Reflector {
         std::unordered_set<doc::ElementId> seen;
         for (const graph::Authored& a : from.authored) {
             if (a.uniform && !from.baked.count(a.uniform)) continue;
-            if (!seen.insert(a.element).second) continue;
+            if (!a.element || isSampling(a) || !seen.insert(a.element).second) continue;
             FixedValue& v = shader.regenerate.emplace_back();
             v.path = d.path(a.element);
             v.type = typeNamed(d.text(a.port->type));
@@ -217,7 +262,32 @@ void writeDescription(JsonWriter& json, const ValueDescription& v) {
     }
 }
 
-void writeUniform(JsonWriter& json, const UniformBinding& u) {
+void writeStages(JsonWriter& json, bool vertex, bool pixel) {
+    json.key("stages");
+    json.openShortArray();
+    if (vertex) json.text("vertex");
+    if (pixel) json.text("pixel");
+    json.closeArray();
+}
+
+void writeBinding(JsonWriter& json, int binding) {
+    if (binding < 0) return;
+    json.key("binding");
+    json.integer(binding);
+}
+
+void writeBlock(JsonWriter& json, const BlockBinding& b) {
+    json.openShortObject();
+    json.member("name", b.name);
+    json.member("layout", "std140");
+    json.key("size");
+    json.integer(b.size);
+    writeBinding(json, b.binding);
+    writeStages(json, b.isVertex, b.isPixel);
+    json.closeObject();
+}
+
+void writeUniform(JsonWriter& json, const UniformBinding& u, const std::vector<BlockBinding>& blocks) {
     json.openShortObject();
     json.member("name", u.name);
     json.member("type", info(u.type).name);
@@ -226,11 +296,12 @@ void writeUniform(JsonWriter& json, const UniformBinding& u) {
     json.member("kind", u.semantic.empty() ? "live" : "predefined");
     json.member("semantic", u.semantic);
     json.member("path", u.path);
-    json.key("stages");
-    json.openShortArray();
-    if (u.isVertex) json.text("vertex");
-    if (u.isPixel) json.text("pixel");
-    json.closeArray();
+    writeStages(json, u.isVertex, u.isPixel);
+    if (u.block >= 0) {
+        json.member("block", blocks[static_cast<std::size_t>(u.block)].name);
+        json.key("offset");
+        json.integer(u.offset);
+    }
     writeDescription(json, u);
     json.closeObject();
 }
@@ -251,6 +322,7 @@ void writeTexture(JsonWriter& json, const TextureBinding& t) {
         for (float c : t.defaultColor) json.number(c);
         json.closeArray();
     }
+    writeBinding(json, t.binding);
     writeDescription(json, t);
     json.closeObject();
 }
@@ -288,7 +360,10 @@ std::string Shader::reflection() const {
     json.closeObject();
     list("uniforms", [&] {
         for (const UniformBinding& u : uniforms)
-            if (u.type != Type::Texture2D) writeUniform(json, u);
+            if (u.type != Type::Texture2D) writeUniform(json, u, blocks);
+    });
+    list("blocks", [&] {
+        for (const BlockBinding& b : blocks) writeBlock(json, b);
     });
     list("regenerate", [&] {
         for (const FixedValue& v : regenerate) writeFixed(json, v);
@@ -304,6 +379,7 @@ std::string Shader::reflection() const {
                 json.member("uaddressmode", "periodic");
                 json.member("vaddressmode", "clamp");
                 json.member("filtertype", "linear");
+                writeBinding(json, u.binding);
                 json.closeObject();
             }
         for (const TextureBinding& t : textures) writeTexture(json, t);

@@ -16,8 +16,8 @@ struct ReflectionSource {
     const passes::ShaderInterface& interface;
     const doc::Document& document;
     const doc::Definitions& definitions;
-    std::span<const graph::Authored> authored;            // as `lower` gives it
-    const std::unordered_set<Name>& baked;                // uniforms that decide topology
+    std::span<const graph::Authored> authored;             // as `lower` gives it
+    const std::unordered_set<Name>& baked;                 // uniforms that decide topology
     const std::unordered_map<Name, std::string>& spelled;  // names as the texts have them, by those in the module
 };
 

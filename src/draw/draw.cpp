@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <new>
 
@@ -62,6 +63,23 @@ struct Uniform {
     GLint location = -1;
     GLenum type = 0;
     GLint count = 1;  // of an array's elements
+    // Of those in a block, which have no location.
+    GLint block = -1, offset = 0, matrixStride = 0, arrayStride = 0;
+    bool isSet = false;
+};
+
+// An active attribute of a linked program.
+struct Attribute {
+    std::string name;
+    GLuint location = 0;
+    GLenum type = 0;
+};
+
+// A uniform block on its way to the driver.
+struct Block {
+    std::string name;
+    std::vector<unsigned char> bytes;
+    GLuint buffer = 0;
 };
 
 // How many components a uniform type has, and of which kind; 0 for what is not a value.
@@ -113,6 +131,7 @@ struct Renderer {
     TextureSet textures{gl};
     GLuint program = 0, vertexArray = 0, framebuffer = 0, colour = 0, depth = 0;
     std::map<std::string, Uniform> uniforms{};  // arrays without their "[0]"
+    std::vector<Block> blocks{};
 
     ~Renderer();
     bool run(Image& out);
@@ -120,10 +139,15 @@ struct Renderer {
     bool link();
     void rejected(const std::string& what, const std::string& log);
     void listUniforms();
+    void listBlocks();
+    bool findInBlock(GLuint index, Uniform& uniform);
+    void store(const Uniform& uniform, const Shape& shape, const std::vector<float>& values);
+    void fillBlocks();
     void set(const std::string& name, const std::vector<float>& values, bool byUser = false);
     void setUniforms();
     void bindTextures();
     Bound textureOf(const std::string& uniform);
+    std::vector<Attribute> attributes() const;
     void bindAttributes();
     bool makeTarget();
 };
@@ -137,6 +161,7 @@ Renderer::~Renderer() {
     gl.deleteFramebuffers(1, &framebuffer);
     gl.deleteTextures(1, &colour);
     gl.deleteRenderbuffers(1, &depth);
+    for (const Block& block : blocks) gl.deleteBuffers(1, &block.buffer);
 }
 
 void Renderer::rejected(const std::string& what, const std::string& log) {
@@ -190,12 +215,36 @@ bool Renderer::link() {
     return ok != 0;
 }
 
+void Renderer::listBlocks() {
+    GLint count = 0;
+    gl.getProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &count);
+    for (GLuint i = 0; i < static_cast<GLuint>(count); i++) {
+        GLint size = 0, length = 0;
+        gl.getActiveUniformBlockiv(program, i, GL_UNIFORM_BLOCK_DATA_SIZE, &size);
+        gl.getActiveUniformBlockiv(program, i, GL_UNIFORM_BLOCK_NAME_LENGTH, &length);
+        Block& block = blocks.emplace_back();
+        block.name.resize(static_cast<std::size_t>(std::max(length, 1)));
+        gl.getActiveUniformBlockName(program, i, length, &length, block.name.data());
+        block.name.resize(static_cast<std::size_t>(length));
+        block.bytes.resize(static_cast<std::size_t>(size));
+    }
+}
+
+bool Renderer::findInBlock(GLuint index, Uniform& uniform) {
+    auto ask = [&](GLenum what, GLint& answer) { gl.getActiveUniformsiv(program, 1, &index, what, &answer); };
+    ask(GL_UNIFORM_BLOCK_INDEX, uniform.block);
+    if (uniform.block < 0) return false;
+    ask(GL_UNIFORM_OFFSET, uniform.offset);
+    ask(GL_UNIFORM_MATRIX_STRIDE, uniform.matrixStride);
+    ask(GL_UNIFORM_ARRAY_STRIDE, uniform.arrayStride);
+    return true;
+}
+
 void Renderer::listUniforms() {
-    GLint count = 0, longest = 0, blocks = 0;
+    listBlocks();
+    GLint count = 0, longest = 0;
     gl.getProgramiv(program, GL_ACTIVE_UNIFORMS, &count);
     gl.getProgramiv(program, GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
-    gl.getProgramiv(program, GL_ACTIVE_UNIFORM_BLOCKS, &blocks);
-    if (blocks > 0) diagnostics.warning("unbound-block", "the shader has uniform blocks, which are not filled");
     std::string buffer(static_cast<std::size_t>(longest) + 1, '\0');
     for (GLint i = 0; i < count; i++) {
         Uniform uniform;
@@ -204,9 +253,47 @@ void Renderer::listUniforms() {
                             &uniform.count, &uniform.type, buffer.data());
         std::string name = buffer.substr(0, static_cast<std::size_t>(length));
         uniform.location = gl.getUniformLocation(program, name.c_str());
-        if (uniform.location < 0) continue;  // in a block, or the driver's own
+        if (uniform.location < 0 && !findInBlock(static_cast<GLuint>(i), uniform)) continue;  // the driver's own
         if (name.ends_with("[0]")) name.resize(name.size() - 3);
         uniforms[name] = uniform;
+    }
+}
+
+GLint toInteger(float v) {
+    return std::isnan(v) ? 0 : static_cast<GLint>(std::round(std::clamp(v, -2147483520.f, 2147483520.f)));
+}
+
+// Values of a uniform in a block, at the places that the driver told.
+void Renderer::store(const Uniform& uniform, const Shape& shape, const std::vector<float>& values) {
+    const std::size_t components = static_cast<std::size_t>(shape.components);
+    const bool isMatrix = shape.kind == Shape::Kind::Matrix;
+    const std::size_t rows = !isMatrix ? components : components == 9 ? 3 : 4;
+    for (std::size_t i = 0; i < values.size(); i++) {
+        const std::size_t at = static_cast<std::size_t>(uniform.offset) +
+                               i / components * static_cast<std::size_t>(std::max(uniform.arrayStride, 0)) +
+                               i % components / rows * static_cast<std::size_t>(std::max(uniform.matrixStride, 0)) +
+                               i % rows * 4;
+        const GLint integer = toInteger(values[i]);
+        const void* word = shape.kind == Shape::Kind::Integer ? static_cast<const void*>(&integer) : &values[i];
+        std::vector<unsigned char>& bytes = blocks[static_cast<std::size_t>(uniform.block)].bytes;
+        if (at + 4 <= bytes.size()) std::memcpy(&bytes[at], word, 4);
+    }
+}
+
+void Renderer::fillBlocks() {
+    for (const auto& [name, uniform] : uniforms)
+        if (uniform.block >= 0 && !uniform.isSet)
+            diagnostics.warning("unbound-block",
+                                fmt::format("nothing sets '{}' in the uniform block '{}': it is 0", name,
+                                            blocks[static_cast<std::size_t>(uniform.block)].name));
+    for (GLuint i = 0; i < blocks.size(); i++) {
+        Block& block = blocks[i];
+        gl.genBuffers(1, &block.buffer);
+        gl.bindBuffer(GL_UNIFORM_BUFFER, block.buffer);
+        gl.bufferData(GL_UNIFORM_BUFFER, static_cast<GLsizeiptr>(block.bytes.size()), block.bytes.data(),
+                      GL_STATIC_DRAW);
+        gl.uniformBlockBinding(program, i, i);
+        gl.bindBufferBase(GL_UNIFORM_BUFFER, i, block.buffer);
     }
 }
 
@@ -217,7 +304,7 @@ void Renderer::set(const std::string& name, const std::vector<float>& values, bo
         if (byUser) diagnostics.warning("unused-uniform", fmt::format("the shader does not use a uniform '{}'", name));
         return;
     }
-    const Uniform& uniform = found->second;
+    Uniform& uniform = found->second;
     const Shape shape = shapeOf(uniform.type);
     const std::size_t components = static_cast<std::size_t>(shape.components);
     if (components == 0 || values.empty() || values.size() % components != 0 ||
@@ -228,6 +315,8 @@ void Renderer::set(const std::string& name, const std::vector<float>& values, bo
                 fmt::format("the uniform '{}' cannot hold {} values; it keeps its own", name, values.size()));
         return;
     }
+    uniform.isSet = true;
+    if (uniform.block >= 0) return store(uniform, shape, values);
     const GLsizei n = static_cast<GLsizei>(values.size() / components);
     const GLint at = uniform.location;
     if (shape.kind == Shape::Kind::Matrix) {
@@ -237,15 +326,14 @@ void Renderer::set(const std::string& name, const std::vector<float>& values, bo
         setters[components - 1](at, n, values.data());
     } else {
         std::vector<GLint> rounded;
-        for (const float v : values)
-            rounded.push_back(
-                std::isnan(v) ? 0 : static_cast<GLint>(std::round(std::clamp(v, -2147483520.f, 2147483520.f))));
+        for (const float v : values) rounded.push_back(toInteger(v));
         const PFNGLUNIFORM1IVPROC setters[] = {gl.uniform1iv, gl.uniform2iv, gl.uniform3iv, gl.uniform4iv};
         setters[components - 1](at, n, rounded.data());
     }
 }
 
 void Renderer::setUniforms() {
+    for (const UniformValue& value : job.defaults) set(value.name, value.values);
     for (const scene::NamedMatrix& m : scene::sceneMatrices()) set(m.uniform, {m.value.begin(), m.value.end()});
     set("u_viewPosition", {0, 0, scene::kEyeDistance});
     set("u_viewDirection", {0, 0, -1});
@@ -254,6 +342,7 @@ void Renderer::setUniforms() {
     set("u_envLightIntensity", {1});
     set("u_numActiveLightSources", {0});
     for (const UniformValue& value : job.uniforms) set(value.name, value.values, true);
+    fillBlocks();
 }
 
 Bound Renderer::textureOf(const std::string& uniform) {
@@ -295,6 +384,23 @@ void Renderer::bindAttributes() {
                                        {"i_bitangent", 3, 3}, {"i_texcoord", 4, 2}, {"i_color", 5, 4}};
     gl.genVertexArrays(1, &vertexArray);
     gl.bindVertexArray(vertexArray);
+    for (const Attribute& a : attributes()) {
+        const Known* known = std::find_if(std::begin(kKnown), std::end(kKnown),
+                                          [&](const Known& k) { return a.name.starts_with(k.prefix); });
+        if (known == std::end(kKnown)) {
+            diagnostics.warning("unbound-attribute",
+                                fmt::format("the sphere has no attribute '{}': it reads as 0", a.name));
+            continue;
+        }
+        gl.bindBuffer(GL_ARRAY_BUFFER, geometry.buffers[known->buffer]);
+        gl.enableVertexAttribArray(a.location);
+        gl.vertexAttribPointer(a.location, known->components, GL_FLOAT, GL_FALSE, 0, nullptr);
+    }
+    gl.bindBuffer(GL_ELEMENT_ARRAY_BUFFER, geometry.buffers[6]);
+}
+
+std::vector<Attribute> Renderer::attributes() const {
+    std::vector<Attribute> all;
     GLint count = 0, longest = 0;
     gl.getProgramiv(program, GL_ACTIVE_ATTRIBUTES, &count);
     gl.getProgramiv(program, GL_ACTIVE_ATTRIBUTE_MAX_LENGTH, &longest);
@@ -302,24 +408,16 @@ void Renderer::bindAttributes() {
     for (GLint i = 0; i < count; i++) {
         GLsizei length = 0;
         GLint elements = 0;
-        GLenum type = 0;
+        Attribute a;
         gl.getActiveAttrib(program, static_cast<GLuint>(i), static_cast<GLsizei>(buffer.size()), &length, &elements,
-                           &type, buffer.data());
-        const std::string name = buffer.substr(0, static_cast<std::size_t>(length));
-        const GLint location = gl.getAttribLocation(program, name.c_str());
+                           &a.type, buffer.data());
+        a.name = buffer.substr(0, static_cast<std::size_t>(length));
+        const GLint location = gl.getAttribLocation(program, a.name.c_str());
         if (location < 0) continue;  // built in, such as gl_VertexID
-        const Known* known = std::find_if(std::begin(kKnown), std::end(kKnown),
-                                          [&](const Known& k) { return name.starts_with(k.prefix); });
-        if (known == std::end(kKnown)) {
-            diagnostics.warning("unbound-attribute",
-                                fmt::format("the sphere has no attribute '{}': it reads as 0", name));
-            continue;
-        }
-        gl.bindBuffer(GL_ARRAY_BUFFER, geometry.buffers[known->buffer]);
-        gl.enableVertexAttribArray(static_cast<GLuint>(location));
-        gl.vertexAttribPointer(static_cast<GLuint>(location), known->components, GL_FLOAT, GL_FALSE, 0, nullptr);
+        a.location = static_cast<GLuint>(location);
+        all.push_back(std::move(a));
     }
-    gl.bindBuffer(GL_ELEMENT_ARRAY_BUFFER, geometry.buffers[6]);
+    return all;
 }
 
 bool Renderer::makeTarget() {
@@ -366,6 +464,31 @@ bool Renderer::run(Image& out) {
 
 }  // namespace
 
+static std::string_view spelled(GLenum type) {
+    switch (type) {
+        case GL_FLOAT:
+            return "float";
+        case GL_FLOAT_VEC2:
+            return "vec2";
+        case GL_FLOAT_VEC3:
+            return "vec3";
+        case GL_FLOAT_VEC4:
+            return "vec4";
+        case GL_INT:
+            return "int";
+        case GL_BOOL:
+            return "bool";
+        case GL_FLOAT_MAT3:
+            return "mat3";
+        case GL_FLOAT_MAT4:
+            return "mat4";
+        case GL_SAMPLER_2D:
+            return "sampler2D";
+        default:
+            return "another type";
+    }
+}
+
 struct Context::State {
     std::unique_ptr<Driver> driver;
     std::unique_ptr<Geometry> geometry;
@@ -403,6 +526,29 @@ Result<Image> Context::render(const Job& job, Diagnostics& diagnostics) {
         diagnostics.error("bad-size", fmt::format("a picture of {0}×{0} pixels does not fit into memory", job.size));
         return Failure{};
     }
+}
+
+Result<Active> Context::active(const std::string& vertex, const std::string& pixel, Diagnostics& diagnostics) {
+    const Gl& gl = state_->driver->gl;
+    if (!state_->driver->makeCurrent()) {
+        diagnostics.error("driver-error", "the driver's context cannot be made current");
+        return Failure{};
+    }
+    Job job;
+    job.vertex = vertex;
+    job.pixel = pixel;
+    Renderer renderer{gl, *state_->geometry, job, diagnostics, {}, 1};
+    if (!renderer.link()) return Failure{};
+    renderer.listUniforms();
+    Active active;
+    for (const auto& [name, u] : renderer.uniforms) {
+        const std::string block = u.block < 0 ? "" : renderer.blocks[static_cast<std::size_t>(u.block)].name;
+        active.uniforms.push_back({name, std::string(spelled(u.type)), block, u.offset});
+    }
+    for (const Attribute& a : renderer.attributes())
+        active.inputs.push_back({a.name, std::string(spelled(a.type)), "", 0});
+    std::sort(active.inputs.begin(), active.inputs.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+    return active;
 }
 
 Result<Image> Context::State::render(const Job& job, Diagnostics& diagnostics) {

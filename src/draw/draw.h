@@ -8,6 +8,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "base/diagnostics.h"
 #include "base/result.h"
@@ -15,6 +17,18 @@
 #include "image/image.h"
 
 namespace shaderx::draw {
+
+// What a driver finds in use once a pair of shaders is linked, each list in the order of names; types as GLSL spells
+// them.
+struct Active {
+    struct Variable {
+        std::string name, type;
+        std::string block;  // of a uniform that stands in one
+        int offset = 0;     // there, in bytes
+        friend bool operator==(const Variable&, const Variable&) = default;
+    };
+    std::vector<Variable> uniforms, inputs;
+};
 
 // A driver with a context of its own and what all jobs share. Drawing makes the context current on the calling thread.
 class Context {
@@ -26,10 +40,13 @@ class Context {
     // Draws one job: linear float RGBA, colours multiplied by coverage, top row first.
     // Errors: driver-rejected (with the driver's log), bad-size, driver-error, and readImage's for the environment.
     // Warnings: missing-texture (the default colour is drawn), unbound-sampler (white is drawn), unbound-attribute,
-    // unbound-block, unused-uniform, bad-uniform-value, texture-reduced.
+    // unbound-block (a value in a block stays 0), unused-uniform, bad-uniform-value, texture-reduced.
     Result<image::Image> render(const Job& job, Diagnostics& diagnostics);
     // Draws and writes job.output. Also errors: unknown-output-format, cannot-write-file.
     bool draw(const Job& job, Diagnostics& diagnostics);
+
+    // Links a pair of shaders and asks what is left of its interface. Errors: driver-rejected, driver-error.
+    Result<Active> active(const std::string& vertex, const std::string& pixel, Diagnostics& diagnostics);
 
     // The driver's name for itself.
     const std::string& renderer() const;

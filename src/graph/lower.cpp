@@ -29,7 +29,7 @@ struct Lowerer {
     std::unordered_map<Name, ExprId> geometric{};
     std::unordered_map<doc::ElementId, Name> uniformOf{};
     Name colorspace = d.names().intern("colorspace"), fileprefix = d.names().intern("fileprefix");
-    Name uniformWord = d.names().intern("uniform");
+    Name uniformWord = d.names().intern("uniform"), unit = d.names().intern("unit");
     std::unordered_set<Name> failed{};  // nodedefs without a function
     bool ok = true;
 
@@ -63,17 +63,22 @@ struct Lowerer {
 
     void node(std::uint32_t i) {
         const Node& n = graph.nodes[i];
+        if (options.traces) fresh.beginOrigin(d.names().intern(d.path(n.element)));
         auto outputs = definitions.outputs(n.def);
         std::vector<ExprId> arguments;
-        Name fileSpace;
+        Name fileSpace, fileUnit;
+        const Input* file = nullptr;
         for (const Input& input : graph.inputsOf(n)) {
             ExprId value = valueOf(input.source, input.type, &input, &n);
             if (value && b.type(value) != input.type) value = fitted(value, input.source, input.type, portOf(input, n));
             if (!value && input.source.kind == Source::Kind::Interface)
                 noParameter(input.source.input, portOf(input, n));
             if (!value) value = b.null(input.type);
-            if (input.type == Type::Texture2D && input.source.kind == Source::Kind::Value)
+            if (input.type == Type::Texture2D && input.source.kind == Source::Kind::Value) {
+                file = &input;
                 fileSpace = d.inherited(input.source.element, colorspace);
+                fileUnit = d.attribute(input.source.element, unit);
+            }
             arguments.push_back(value);
         }
         std::size_t errors = diagnostics.errorCount();
@@ -97,6 +102,7 @@ struct Lowerer {
             Type type = b.type(made[k]);
             if (fileSpace && (type == Type::Color3 || type == Type::Color4))
                 made[k] = transformed(made[k], fileSpace, n.element);
+            if (fileUnit) made[k] = inUnits(made[k], fileUnit, file->source.element, file, &n);
             std::string_view nodeName = d.text(d[n.element].name);
             b.hint(made[k], made.size() == 1
                                 ? d[n.element].name
@@ -191,6 +197,7 @@ struct Lowerer {
         if (options.interface != Interface::Baked) record(live ? uniformOf[element] : Name(), element, input, owner);
         if (type == Type::Color3 || type == Type::Color4)
             if (Name space = d.attribute(element, colorspace)) value = transformed(value, space, element);
+        if (Name from = d.attribute(element, unit)) value = inUnits(value, from, element, input, owner);
         return value;
     }
 
@@ -288,6 +295,23 @@ struct Lowerer {
         return b.call(function, type, std::span<const ExprId>(&value, 1));
     }
 
+    // A value that the document gives in a unit, in that of the scene.
+    ExprId inUnits(ExprId value, Name given, doc::ElementId at, const Input* input, const Node* owner) {
+        Name word = d.names().intern("unittype");
+        std::string_view type = d.attributeText(at, word), from = d.text(given);
+        if (type.empty() && input) type = definitions.element(owner->def, *input->port).attributeText(word);
+        std::string_view to = type == "distance" ? options.distanceUnit : type == "angle" ? options.angleUnit : from;
+        if (from == to || info(b.type(value)).scalar != Scalar::Float) return value;
+        float scale = bodies.unitScale(type, from), target = bodies.unitScale(type, to);
+        if (scale > 0 && target > 0) return b.op(Op::Mul, {value, b.number(scale / target)});
+        Diagnostic& w = diagnostics.warning(
+            "unknown-unit",
+            fmt::format("there is no unit '{}' of the type '{}'; the value is used as it is", from, type));
+        w.where = d.locate(at, unit);
+        w.path = d.path(at);
+        return value;
+    }
+
     // What an input is where nothing is written: a geometric property, or the nodedef's value.
     ExprId defaultOf(const Input& input, const Node& owner) {
         doc::ElementRef element = definitions.element(owner.def, *input.port);
@@ -316,6 +340,7 @@ struct Lowerer {
         else
             u.values = wordsOf(u.type, value);
         module.uniforms.push_back(u);
+        record(u.name, {}, &input, &owner);
         return b.uniform(u.name, u.type);
     }
 

@@ -321,6 +321,18 @@ std::vector<bool> reachable(const Function& f) {
     return live;
 }
 
+// Runs of origins go to where their first expressions went that are left; `at` says where.
+static void moveOrigins(Function& f, std::span<const std::uint32_t> at) {
+    std::vector<std::pair<std::uint32_t, Name>> moved;
+    for (auto [first, origin] : f.origins) {
+        while (first < at.size() && at[first] == ExprId::kNone) first++;
+        if (first == at.size()) break;
+        if (!moved.empty() && moved.back().first == at[first]) moved.pop_back();
+        moved.emplace_back(at[first], origin);
+    }
+    f.origins = std::move(moved);
+}
+
 void compact(Function& f) {
     constexpr std::uint32_t kDead = ExprId::kNone;
     const std::size_t n = f.exprs.size();
@@ -353,6 +365,7 @@ void compact(Function& f) {
         f.hints[next] = f.hints[i];
         f.exprs[next++] = e;
     }
+    moveOrigins(f, at);
     f.exprs.resize(next);
     f.hints.resize(next);
     f.operands.resize(operands);

@@ -1,8 +1,17 @@
 #include "ir/module.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "base/diagnostics.h"
 
 namespace shaderx::ir {
+
+Name Function::originOf(ExprId e) const {
+    auto isAfter = [](std::uint32_t i, const auto& origin) { return i < origin.first; };
+    auto after = std::upper_bound(origins.begin(), origins.end(), e.index, isAfter);
+    return after == origins.begin() ? Name() : std::prev(after)->second;
+}
 
 Function& Module::add(Name name) {
     Function f;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "base/handle.h"
@@ -67,9 +68,11 @@ struct Function {
     std::vector<std::uint32_t> words;  // bits of constants
     std::vector<Name> hints;           // by expression: what to call the value, may be none
     Body body;                         // empty before `place`
-    std::uint32_t loops = 0;           // loop numbers in use
-    bool isInline = false;             // expand wherever called
-    std::string comment;               // one or more sentences about what it does, may be empty
+    // Which node of the document expressions come from: a name for all from an expression on. Empty unless asked for.
+    std::vector<std::pair<std::uint32_t, Name>> origins;
+    std::uint32_t loops = 0;  // loop numbers in use
+    bool isInline = false;    // expand wherever called
+    std::string comment;      // one or more sentences about what it does, may be empty
 
     const Expr& operator[](ExprId e) const { return exprs[e.index]; }
     std::span<const ExprId> operandsOf(ExprId e) const { return operandsOf(exprs[e.index]); }
@@ -77,6 +80,12 @@ struct Function {
         return {operands.data() + e.firstOperand, e.operandCount};
     }
     ExprId operand(ExprId e, std::size_t k) const { return operands[exprs[e.index].firstOperand + k]; }
+    // What is made from now on comes from there.
+    void beginOrigin(Name origin) {
+        if (origins.empty() || origins.back().second != origin)
+            origins.emplace_back(static_cast<std::uint32_t>(exprs.size()), origin);
+    }
+    Name originOf(ExprId e) const;
     bool isConstant(ExprId e) const { return exprs[e.index].op == Op::Constant; }
     // Bits of a constant that has components.
     std::span<const std::uint32_t> constantWords(ExprId e) const {

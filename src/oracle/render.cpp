@@ -266,11 +266,13 @@ struct PixelStage {
         const std::size_t first = batch * kLanes, n = std::min(kLanes, fragments.size() - first);
         const std::span<const Fragment> some(&fragments[first], n);
         environment.place(some, side);
-        std::array<LaneWords, 4> results;
+        std::array<LaneWords, 5> results;  // a colour, and whether it is discarded
+        const bool discards = job.module->findOwn(job.interface->pixel)->results.size() > 1;
         const LaneMask mask = n == kLanes ? ~LaneMask{0} : (LaneMask{1} << n) - 1;
-        if (!interpreter.run(mask, {}, results, environment, diagnostics)) return false;
+        const std::span<LaneWords> used(results.data(), discards ? 5 : 4);
+        if (!interpreter.run(mask, {}, used, environment, diagnostics)) return false;
         for (std::size_t lane = 0; lane < n; lane++) {
-            if (!some[lane].shown) continue;
+            if (!some[lane].shown || (discards && results[4].lane[lane])) continue;
             float* pixel = &out.floats[out.index(some[lane].x, side - 1 - some[lane].y, 0)];
             for (std::size_t c = 0; c < 4; c++) pixel[c] = results[c].f(lane);
         }

@@ -16,6 +16,7 @@ std::span<const ExprId> Copy::operands(ExprId e) {
 }
 
 ExprId Copy::one(ExprId id, Type type) {
+    follow(id);
     const Expr& e = from_[id];
     std::uint32_t payload = e.payload;
     if (e.op == Op::LoopArg) payload += loopBase_ << 8;
@@ -37,6 +38,7 @@ ExprId Copy::one(ExprId id, Type type) {
 }
 
 ExprId Copy::raw(ExprId id) {
+    follow(id);
     const Expr& e = from_[id];
     const bool isLoop = e.op == Op::LoopArg || e.op == Op::Loop || e.op == Op::Lights;
     if (isLoop || (e.op == Op::Constant && componentCount(e.type))) return one(id);

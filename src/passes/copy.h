@@ -11,7 +11,8 @@ namespace shaderx::passes {
 // What became of each expression of the source function. Loops get new numbers, in the old order, above those in use.
 class Copy {
   public:
-    Copy(const ir::Function& from, ir::Builder& to) : from_(from), to_(to), loopBase_(to.function().loops) {
+    Copy(const ir::Function& from, ir::Builder& to)
+        : from_(from), to_(to), loopBase_(to.function().loops), isTraced_(!from.origins.empty()) {
         to.function().loops += from.loops;
         map_.resize(from.exprs.size());
     }
@@ -19,7 +20,11 @@ class Copy {
     void set(ir::ExprId e, ir::ExprId copy) { map_[e.index] = copy; }
     // The copies of an expression's operands; valid until the next call.
     std::span<const ir::ExprId> operands(ir::ExprId e);
-    // Copies one expression whose operands are copied, its hint too.
+    // Says that what is made now comes from where an expression does, if its function tells.
+    void follow(ir::ExprId e) {
+        if (isTraced_) to_.function().beginOrigin(from_.originOf(e));
+    }
+    // Copies one expression whose operands are copied, its hint and origin too.
     ir::ExprId one(ir::ExprId e) { return one(e, from_[e].type); }
     // The same as another type of as many components.
     ir::ExprId one(ir::ExprId e, ir::Type type);
@@ -30,6 +35,7 @@ class Copy {
     const ir::Function& from_;
     ir::Builder& to_;
     std::uint32_t loopBase_;
+    bool isTraced_;
     std::vector<ir::ExprId> map_, operands_;
 };
 

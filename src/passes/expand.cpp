@@ -68,6 +68,7 @@ struct Expander {
                 std::vector<ExprId> given(operands.begin(), operands.end());
                 Expanded& made = calls[i];
                 made.before = static_cast<std::uint32_t>(b.function().exprs.size());
+                copy.follow(id);
                 depth++;
                 made.results = expand(*callee, b, given);
                 depth--;

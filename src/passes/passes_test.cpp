@@ -5,6 +5,8 @@
 //     #! baked NAME...   specialise: uniforms to bake
 //     #! isEntry         place: as an entry; the functions are placed as they are otherwise
 //     #! skipsUnused     shade: says where long functions are needed
+//     #! noEnvironment   shade: without light from the environment
+//     #! transparency    shade: alpha says how much of a surface is there
 //     #! longest NUMBER  place: the longest text of an expression
 //     #! invalid         the program breaks the rules of the IR before the pass
 #include <algorithm>
@@ -19,6 +21,7 @@
 #include "ir/text.h"
 #include "ir/validate.h"
 #include "passes/expand.h"
+#include "passes/flip.h"
 #include "passes/gather.h"
 #include "passes/place.h"
 #include "passes/prune.h"
@@ -58,6 +61,10 @@ Options optionsOf(const std::string& text) {
     while (words >> word) {
         if (word == "entry")
             words >> o.entry;
+        else if (word == "noEnvironment")
+            o.shade.environment = false;
+        else if (word == "transparency")
+            o.shade.transparency = true;
         else if (word == "isEntry")
             o.place.isEntry = true;
         else if (word == "skipsUnused")
@@ -162,6 +169,10 @@ std::string outcome(const std::string& pass, Module& module, const Options& o, D
     if (pass == "gather" || pass == "expand_to_long_work" || pass == "expand_called_once") {
         (pass == "gather" ? gather : pass == "expand_called_once" ? expandCalledOnce : expandToLongWork)(module, entry);
         return printReached(module, entry);
+    }
+    if (pass == "flip") {
+        flipTextures(module);
+        return print(module);
     }
     if (pass == "prune") {
         prune(module, std::array{entry});

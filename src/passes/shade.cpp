@@ -14,9 +14,10 @@ using namespace ir;
 
 namespace {
 
-// Light that leaves the surface, before opacity, and the opacity.
+// Light that leaves the surface, before opacity, the opacity, and what shines through from behind (where it is asked
+// for).
 struct Lit {
-    ExprId color, opacity;
+    ExprId color, opacity, clear{};
 };
 
 // What the functions of a leaf give.
@@ -48,12 +49,18 @@ struct Shader {
         fresh.comment = from.comment;
         for (std::uint32_t i = 0; i < from.exprs.size(); i++)
             if (live[i] && !isClosure(from.exprs[i].type)) copy.one(ExprId(i));
+        beginLight();
         ExprId result = from.results[0].value;
         Type type = from.results[0].type;
         ExprId pixel;
         if (type == Type::SurfaceShader || type == Type::Material) {
             Lit lit = surface(result);
-            pixel = b.make(Type::Vector4, {product(lit.color, lit.opacity), one()});
+            ExprId alpha = options.transparency ? alphaOf(lit.clear) : one();
+            pixel = b.make(Type::Vector4, {product(lit.color, lit.opacity), alpha});
+            b.addResult(output, pixel);
+            if (options.transparency)
+                b.addResult(name("discarded"), b.op(Op::Less, {alpha, b.context(Context::AlphaThreshold)}));
+            return;
         } else if (type == Type::BSDF) {
             pixel = b.make(Type::Vector4, {environment(result), one()});
         } else if (type == Type::EDF) {
@@ -64,6 +71,15 @@ struct Shader {
             pixel = asColor(copy[result]);
         }
         b.addResult(output, pixel);
+    }
+
+    ExprId alphaOf(ExprId clear) {
+        ExprId sum =
+            b.op(Op::Add, {b.op(Op::Add, {b.component(clear, 0), b.component(clear, 1)}), b.component(clear, 2)});
+        ExprId alpha = b.op(Op::Sub, {one(), product(b.number(0.3333f), sum)});
+        alpha = b.op(Op::Clamp, {alpha, b.number(0), one()});
+        b.hint(alpha, name("alpha"));
+        return alpha;
     }
 
     ExprId asColor(ExprId v) {
@@ -100,36 +116,48 @@ struct Shader {
             auto o = from.operandsOf(from.exprs[i]);
             switch (from.exprs[i].op) {
                 case Op::Surface:
-                    lit[i] = {surfaceColor(o[0], o[1]), copy[o[2]]};
+                    lit[i] = {surfaceColor(o[0], o[1]), copy[o[2]], black()};
+                    if (options.transparency)
+                        lit[i].clear = b.convert(b.op(Op::Sub, {one(), copy[o[2]]}), Type::Color3);
                     break;
                 case Op::SurfaceUnlit:
-                    lit[i] = {copy[o[0]], copy[o[2]]};
+                    lit[i] = {copy[o[0]], copy[o[2]], black()};
+                    if (options.transparency)
+                        lit[i].clear = b.op(Op::Mix, {b.constant(Type::Color3, {1.0f}), copy[o[1]], copy[o[2]]});
                     break;
                 case Op::ClosureMix: {
                     ExprId t = copy[o[2]];
                     Lit x = lit[o[0].index], y = lit[o[1].index];
                     ExprId color = b.op(Op::Mix, {product(x.color, x.opacity), product(y.color, y.opacity), t});
-                    lit[i] = {color, one()};
+                    lit[i] = {color, one(), options.transparency ? b.op(Op::Mix, {x.clear, y.clear, t}) : black()};
                     break;
                 }
                 case Op::ClosureAdd: {
                     Lit x = lit[o[0].index], y = lit[o[1].index];
-                    lit[i] = {b.op(Op::Add, {product(x.color, x.opacity), product(y.color, y.opacity)}), one()};
+                    lit[i] = {b.op(Op::Add, {product(x.color, x.opacity), product(y.color, y.opacity)}), one(),
+                              options.transparency ? both(x.clear, y.clear) : black()};
                     break;
                 }
                 case Op::ClosureScale:
-                    lit[i] = {product(lit[o[0].index].color, copy[o[1]]), lit[o[0].index].opacity};
+                    lit[i] = lit[o[0].index];
+                    lit[i].color = product(lit[i].color, copy[o[1]]);
                     break;
                 case Op::Retype: {  // a shader as a material; that of a volume gives no light here
                     const Lit of = lit[o[0].index];
-                    lit[i] = of.color ? of : Lit{black(), one()};
+                    lit[i] = of.color ? of : Lit{black(), one(), black()};
                     break;
                 }
                 default:
-                    lit[i] = {black(), one()};  // nothing that gives light
+                    lit[i] = {black(), one(), black()};  // nothing that gives light
             }
         }
         return lit[root.index];
+    }
+
+    // What two sheets let through that share a surface: what neither stops.
+    ExprId both(ExprId x, ExprId y) {
+        ExprId sum = b.op(Op::Sub, {b.op(Op::Add, {x, y}), one()});
+        return b.op(Op::Max, {sum, b.number(0)});
     }
 
     ExprId surfaceColor(ExprId bsdf, ExprId edf) {
@@ -211,10 +239,8 @@ struct Shader {
                 return b.op(Op::Mix, {of(0), of(1), copy[o[2]]});
             case Op::ClosureLayer:
                 return from[o[1]].type == e.type ? product(of(0), of(1)) : of(0);
-            case Op::ClosureAdd: {
-                ExprId sum = b.op(Op::Sub, {b.op(Op::Add, {of(0), of(1)}), one()});
-                return b.op(Op::Max, {sum, b.number(0)});
-            }
+            case Op::ClosureAdd:
+                return both(of(0), of(1));
             case Op::ClosureScale:
                 return of(0);
             default:
@@ -284,10 +310,22 @@ struct Shader {
             return results;
         }
         bool single = f->results.size() == 1;
+        begin(id);
         ExprId call = b.call(f->name, single ? f->results[0].type : Type::Tuple, arguments);
         for (std::uint32_t k = 0; k < f->results.size(); k++)
             results.push_back(single ? call : b.result(call, k, f->results[k].type));
         return results;
+    }
+
+    // What is made for a leaf comes from its node, and there from the part that has its name.
+    void begin(ExprId id) {
+        if (from.origins.empty()) return;
+        std::string_view node = module.names->text(from.originOf(id)), part = module.names->text(from.hints[id.index]);
+        bool isWhole = part.empty() || node == part || node.ends_with("/" + std::string(part));
+        fresh.beginOrigin(isWhole ? from.originOf(id) : name(fmt::format("{}/{}", node, part)));
+    }
+    void beginLight() {
+        if (!from.origins.empty()) fresh.beginOrigin({});
     }
 
     LeafLight leaf(ExprId id) {
@@ -299,6 +337,7 @@ struct Shader {
             b.hint(light.radiance, hint);
             b.hint(light.albedo, name(fmt::format("{}_albedo", module.names->text(hint))));
         }
+        beginLight();
         return leaves[id.index] = ifUsed(id, light);
     }
 
@@ -344,6 +383,7 @@ struct Shader {
     }
 
     ExprId environment(ExprId bsdf) {
+        if (!options.environment) return black();
         if (options.skipsUnused) share(bsdf);
         std::vector<ExprId> w = weigh(bsdf, Type::BSDF);
         // From the outermost lobe inwards. Lobes that differ only in weight are one.
@@ -374,6 +414,7 @@ struct Shader {
         for (std::uint32_t i = 0; i <= edf.index; i++) {
             if (!w[i] || from.exprs[i].op != Op::Leaf) continue;
             std::vector<ExprId> r = callLeaf(ExprId(i), "_emission");
+            beginLight();
             if (r.size() != 1) continue;
             ExprId lobe = product(w[i], r[0]);
             sum = sum ? b.op(Op::Add, {sum, lobe}) : lobe;

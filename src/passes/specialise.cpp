@@ -220,6 +220,7 @@ struct Specialiser {
             const Expr& e = from.exprs[i];
             if (e.op == Op::Call) {
                 std::uint32_t before = size(b);
+                copy.follow(id);
                 const std::vector<ExprId>& results = call(b, e, copy.operands(id));
                 if (e.type != Type::Tuple) {
                     copy.set(id, results[0]);
@@ -537,6 +538,7 @@ struct Specialiser {
         std::vector<ExprId> at(f.exprs.size()), arguments;
         for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
             const Expr& e = f.exprs[i];
+            if (!f.origins.empty()) fresh.beginOrigin(f.originOf(ExprId(i)));
             if (e.op == Op::Constant && componentCount(e.type)) {
                 at[i] = to.constant(e.type, f.constantWords(ExprId(i)), f.hints[i]);
                 continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -174,6 +175,31 @@ ShaderInterface makeStages(Module& module, Name pixel, Name vertex) {
         made.inputs.push_back({module.names->intern(inputName(module.names->text(name))), type});
     module.put(std::move(f));
     return made;
+}
+
+std::vector<Context> blockContexts(const ShaderInterface& interface) {
+    std::vector<Context> all;
+    const auto &vertex = interface.vertexUniforms.contexts, &pixel = interface.pixelUniforms.contexts;
+    std::set_union(vertex.begin(), vertex.end(), pixel.begin(), pixel.end(), std::back_inserter(all));
+    std::erase_if(all, [](Context c) { return info(c).type == Type::Texture2D; });
+    return all;
+}
+
+std::vector<Name> blockUniforms(const Module& module, const ShaderInterface& interface) {
+    std::vector<Name> all;
+    for (Name name : interface.pixelUniforms.uniforms)
+        if (const Uniform* u = module.uniform(name); u && u->type != Type::Texture2D) all.push_back(name);
+    return all;
+}
+
+std::uint32_t placeMember(Type type, std::uint32_t& end) {
+    const TypeInfo& t = info(type);
+    // A matrix is its columns, each as wide as four numbers.
+    std::uint32_t align = t.columns > 1 || t.rows > 2 ? 16 : t.rows * 4u;
+    std::uint32_t size = t.columns > 1 ? t.columns * 16u : t.rows * 4u;
+    std::uint32_t at = (end + align - 1) / align * align;
+    end = at + size;
+    return at;
 }
 
 std::vector<std::uint32_t> defaultOf(Context c) {

@@ -18,8 +18,12 @@ struct Topology {
     std::vector<bool> decides = std::vector<bool>(f.exprs.size());   // its value is why something vanishes
     std::unordered_set<Name> found = {};
 
-    void run() {
+    void evaluateAll() {
         for (std::uint32_t i = 0; i < f.exprs.size(); i++) evaluateOne(ExprId(i));
+    }
+
+    void run() {
+        evaluateAll();
         // Users stand after their operands, so one pass from the end meets every reason after what it is a reason for.
         for (std::uint32_t i = static_cast<std::uint32_t>(f.exprs.size()); i-- > 0;) {
             seed(ExprId(i));
@@ -135,6 +139,12 @@ std::unordered_set<Name> topologyUniforms(const Module& module, const Function& 
     Topology t{module, entry};
     t.run();
     return t.found;
+}
+
+std::vector<Value> valuesByDefault(const Module& module, const Function& f) {
+    Topology t{module, f};
+    t.evaluateAll();
+    return std::move(t.values);
 }
 
 }  // namespace shaderx::passes

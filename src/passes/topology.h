@@ -2,7 +2,9 @@
 #pragma once
 
 #include <unordered_set>
+#include <vector>
 
+#include "ir/evaluate.h"
 #include "ir/module.h"
 
 namespace shaderx::passes {
@@ -12,5 +14,8 @@ namespace shaderx::passes {
 // bound loops. Found by folding with the defaults and walking back from what vanished to the uniforms that
 // made it vanish: a product that is 0 is so because of its factors that are 0. `entry` must be specialised.
 std::unordered_set<Name> topologyUniforms(const ir::Module& module, const ir::Function& entry);
+
+// What each expression is by the defaults of all uniforms; of type Void where these do not decide it.
+std::vector<ir::Value> valuesByDefault(const ir::Module& module, const ir::Function& f);
 
 }  // namespace shaderx::passes

@@ -31,6 +31,9 @@ struct Settings {
     float exposure = 0;       // in stops, for .png only
     std::string output;       // .png (sRGB), .exr or .pfm (linear)
     std::vector<UniformValue> uniforms;
+    // Values that uniforms in blocks have unless the scene or `uniforms` sets them: such uniforms have no defaults of
+    // their own.
+    std::vector<UniformValue> defaults;
     // Pixels are averaged from supersample × supersample drawn ones. 0: 2 for a .png that stays cheap, otherwise 1.
     int supersample = 0;
 };

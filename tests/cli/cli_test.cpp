@@ -179,6 +179,47 @@ TEST(Generate, FoldersThatCannotBeWrittenLeaveNoHalfFiles) {
     EXPECT_EQ(shaderx("generate " + gold + " -o - > /dev/full").exitCode, 1);
 }
 
+TEST(Generate, OptionsOfEngines) {
+    std::string gold = golden("gold.mtlx").string(), textured = golden("textured.mtlx").string(),
+                ghost = golden("ghost.mtlx").string();
+    auto text = [&](const std::string& arguments) { return shaderx("generate -o - " + arguments).output; };
+    EXPECT_TRUE(contains(text(gold), "u_envRadianceSamples"));
+    EXPECT_FALSE(contains(text(gold + " --env prefilter"), "u_envRadianceSamples"));
+    EXPECT_FALSE(contains(text(gold + " --env none"), "u_envRadiance"));
+    EXPECT_TRUE(contains(text(textured + " --flip-v"), "1.0 - "));
+    EXPECT_NE(text(textured + " --flip-v"), text(textured));
+    EXPECT_TRUE(contains(text(ghost + " --transparency"), "discard;"));
+    EXPECT_TRUE(contains(text(gold + " --blocks"), "layout(std140) uniform PublicUniforms"));
+    EXPECT_TRUE(
+        contains(text(gold + " --blocks --binding-base 4"), "layout(std140, binding = 4) uniform PrivateUniforms"));
+    OwnFolder own;
+    writeText(own / "long.mtlx",
+              "<materialx version='1.39'><constant name='c' type='float'><input name='value' type='float' "
+              "value='2' unittype='distance' unit='yard'/></constant>"
+              "<output name='out' type='float' nodename='c'/></materialx>");
+    EXPECT_TRUE(contains(text(own / "long.mtlx" + " --interface baked"), "1.8288"));
+    EXPECT_TRUE(contains(text(own / "long.mtlx" + " --interface baked --unit inch"), "72.0"));
+    Ran ran = shaderx("generate -o - --unit league " + gold);
+    EXPECT_EQ(ran.exitCode, 1);
+    EXPECT_TRUE(contains(ran.errors, "[unknown-scene-unit]")) << ran.errors;
+    for (const char* wrong : {"--env fog", "--binding-base -1", "--binding-base x"})
+        EXPECT_EQ(shaderx("generate -o - " + std::string(wrong) + " " + gold).exitCode, 2) << wrong;
+}
+
+TEST(Inspect, TextOrJson) {
+    std::string gold = golden("gold.mtlx").string(), glass = golden("glass.mtlx").string();
+    Ran ran = shaderx("inspect --lobes " + gold);
+    EXPECT_EQ(ran.exitCode, 0) << ran.errors;
+    EXPECT_TRUE(contains(ran.output, "  lobes that were removed\n")) << ran.output;
+    EXPECT_FALSE(contains(ran.output, "cost of a pixel"));
+    ran = shaderx("inspect --cost " + gold);
+    EXPECT_TRUE(contains(ran.output, "cost of a pixel") && !contains(ran.output, "lobes that")) << ran.output;
+    ran = shaderx("inspect --json " + gold + " " + glass);
+    EXPECT_TRUE(ran.output.starts_with("[\n  {") && contains(ran.output, "\"cost\"")) << ran.output;
+    EXPECT_EQ(shaderx("inspect nowhere.mtlx").exitCode, 1);
+    EXPECT_EQ(shaderx("inspect --lobes").exitCode, 2);
+}
+
 TEST(Generate, LibrariesAndSearchPaths) {
     OwnFolder own;
     fs::create_directories(own / "nodes");

@@ -1,5 +1,6 @@
 #include "apps/cli/commands.h"
 
+#include <bit>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -9,6 +10,7 @@
 
 #include "apps/cli/files.h"
 #include "compile/compile.h"
+#include "compile/inspect.h"
 #include "doc/file_resolver.h"
 #include "draw/loader.h"
 #include "oracle/loader.h"
@@ -104,6 +106,13 @@ struct Session {
         GenerateOptions how;
         interfaceNamed(options.interface, how.interface);
         how.dumps = &dumps;
+        if (options.light != "fis")
+            how.environment = options.light == "none" ? EnvironmentLight::None : EnvironmentLight::Prefiltered;
+        how.flipV = options.flipV;
+        how.transparency = options.transparency;
+        how.blocks = options.blocks;
+        how.bindingBase = options.bindingBase;
+        how.unit = options.unit;
         return how;
     }
 
@@ -207,6 +216,31 @@ int validate(const Options& options) {
     return s.exitCode();
 }
 
+int inspect(const Options& options) {
+    Session s{options};
+    if (!s.start()) return s.exitCode();
+    bool both = !options.lobes && !options.cost;
+    std::vector<Inspection> found;
+    for (const std::string& file : options.files) {
+        std::unique_ptr<doc::Document> document = s.read(file);
+        if (!document) continue;
+        for (doc::ElementId element : s.elements(file, *document)) {
+            Diagnostics diagnostics;
+            Inspection one{document->path(element), {}, {}};
+            if (both || options.lobes)
+                if (auto lobes = s.compiler.lobes(*document, element, s.how(), diagnostics))
+                    one.lobes = std::move(*lobes);
+            if ((both || options.cost) && !diagnostics.hasErrors())
+                if (auto costs = s.compiler.costs(*document, element, s.how(), diagnostics))
+                    one.costs = std::move(*costs);
+            if (s.report(diagnostics, "inspect " + file + " --element " + one.element)) found.push_back(std::move(one));
+        }
+    }
+    std::string text = options.json ? inspectionJson(found) : inspectionText(found);
+    std::fputs(text.c_str(), stdout);
+    return s.exitCode();
+}
+
 // A file of a document: as it is, beside the document, or below a search path.
 static std::string resolved(const Options& options, const std::string& document, const std::string& file) {
     namespace fs = std::filesystem;
@@ -217,6 +251,15 @@ static std::string resolved(const Options& options, const std::string& document,
     for (const std::string& path : options.paths)
         if (fs::exists(fs::path(path) / file, ignored)) return (fs::path(path) / file).string();
     return beside.string();
+}
+
+// The default of a uniform, as numbers of any kind are set.
+static std::vector<float> numbersOf(const UniformBinding& u) {
+    std::vector<float> numbers;
+    for (std::uint32_t w : u.value)
+        numbers.push_back(ir::info(u.type).scalar == ir::Scalar::Float ? std::bit_cast<float>(w)
+                                                                       : static_cast<float>(static_cast<int>(w)));
+    return numbers;
 }
 
 int draw(const Options& options) {
@@ -236,6 +279,8 @@ int draw(const Options& options) {
     settings.environment = options.environment;
     settings.exposure = options.exposure;
     settings.output = options.picture;
+    for (const UniformBinding& u : shader->uniforms)
+        if (u.block >= 0) settings.defaults.push_back({u.name, numbersOf(u)});
     for (const TextureBinding& t : shader->textures) {
         scene::Texture texture{
             t.uniform, resolved(options, file, t.file), t.uAddress, t.vAddress, t.filter, {0, 0, 0, 0}, t.path};

@@ -11,10 +11,16 @@ enum ExitCode { kDone = 0, kInputErrors = 1, kBadUsage = 2, kOurBug = 3 };
 struct Options {
     std::vector<std::string> files, paths, libraries;
     std::string out = ".", target = "glsl", element, interface = "live", dump;
+    // of the shaders that are made
+    std::string light = "fis", unit = "meter";
+    bool flipV = false, transparency = false, blocks = false;
+    int bindingBase = -1;
     // of draw
     std::string picture, environment, with = "gl";
     int size = 512, samples = 1024;
     float exposure = 0;
+    // of inspect
+    bool lobes = false, cost = false, json = false;
     // of eval
     std::string function;
     std::vector<std::string> arguments;
@@ -23,6 +29,7 @@ struct Options {
 int generate(const Options& options);
 int validate(const Options& options);
 int draw(const Options& options);
+int inspect(const Options& options);
 int showIr(const Options& options);
 int evaluate(const Options& options);
 

@@ -24,6 +24,14 @@ void shading(CLI::App& command, Options& o) {
         .add_option("--interface", o.interface,
                     "complete: all values are uniforms; live: authored ones are; baked: none")
         ->check(CLI::IsMember({"complete", "live", "baked", "reduced"}));
+    command.add_option("--env", o.light, "the environment's light: sampled, looked up in prefiltered maps, or none")
+        ->check(CLI::IsMember({"fis", "prefilter", "none"}));
+    command.add_flag("--flip-v", o.flipV, "for hosts that load pictures with their top row first");
+    command.add_flag("--transparency", o.transparency, "alpha from opacity; discard what is clear");
+    command.add_flag("--blocks", o.blocks, "uniforms in std140 blocks");
+    command.add_option("--binding-base", o.bindingBase, "number the bindings of blocks and textures from here")
+        ->check(CLI::NonNegativeNumber);
+    command.add_option("--unit", o.unit, "what a unit of distance is in the scene");
     command.add_option("--dump", o.dump,
                        "print the program after a stage: read, check, graph, lower, specialise, shade, interface, "
                        "place, legalise, print");
@@ -40,6 +48,15 @@ void drawing(CLI::App& command, Options& o) {
     command.add_option("--samples", o.samples, "samples of the environment a pixel and lobe")
         ->check(CLI::Range(0, 1 << 20));
     command.add_option("--exposure", o.exposure, "stops, for .png");
+    shading(command, o);
+    common(command, o);
+}
+
+void inspecting(CLI::App& command, Options& o) {
+    command.add_option("FILE", o.files, "documents; - is standard input")->required();
+    command.add_flag("--lobes", o.lobes, "which lobes remain, with which weights, and what removed the others");
+    command.add_flag("--cost", o.cost, "instructions and reads by node");
+    command.add_flag("--json", o.json, "as JSON");
     shading(command, o);
     common(command, o);
 }
@@ -77,6 +94,9 @@ int main(int argc, char** argv) {
     CLI::App* draw = app.add_subcommand("draw", "draw a material on a sphere");
     if (named("draw")) drawing(*draw, o);
 
+    CLI::App* inspect = app.add_subcommand("inspect", "say why the shaders of documents are as they are");
+    if (named("inspect")) inspecting(*inspect, o);
+
     CLI::App* ir = app.add_subcommand("ir", "check a program in the text form of the IR and print it");
     if (named("ir")) ir->add_option("FILE", o.files, "the text; - is standard input")->required()->expected(1);
 
@@ -90,6 +110,7 @@ int main(int argc, char** argv) {
     }
     if (*generate) return shaderx::cli::generate(o);
     if (*validate) return shaderx::cli::validate(o);
+    if (*inspect) return shaderx::cli::inspect(o);
     if (*ir) return shaderx::cli::showIr(o);
     if (*eval) return shaderx::cli::evaluate(o);
     return shaderx::cli::draw(o);

@@ -60,6 +60,11 @@ std::string FunctionPrinter::signature() {
 void FunctionPrinter::entryResults() {
     for (std::size_t k = 0; k < f_.results.size(); k++) {
         std::string name = stage_.output;
+        if (stage_.isPixel && k == 1) {  // see passes/shade.h
+            stage_.out.line(fmt::format("if ({})", textOf(f_.results[k].value)));
+            stage_.out.line("    discard;");
+            continue;
+        }
         if (!stage_.isPixel) name = k == 0 ? "gl_Position" : "vd." + stage_.members.at(f_.results[k].name);
         stage_.out.line({name, " = ", textOf(f_.results[k].value), ";"});
     }
@@ -276,24 +281,85 @@ void FunctionPrinter::assign(const std::string& target, ExprId value, ExprId sel
 namespace {
 
 void uniformLine(Stage& stage, Type type, const std::string& name, const std::vector<std::uint32_t>& words) {
-    std::string value = words.empty() ? "" : " = " + constantText(type, words.data());
-    stage.out.line({"uniform ", typeName(type), " ", name, value, ";"});
+    stage.out.line({"uniform ", typeName(type), " ", name, " = ", constantText(type, words.data()), ";"});
+}
+
+// One uniform block; its members need no prefix. Values that the host has not set are undefined.
+void openBlock(Stage& stage, std::string_view name, int index) {
+    int base = stage.interface.bindingBase;
+    std::string binding = base < 0 ? "" : fmt::format(", binding = {}", base + index);
+    stage.out.open(fmt::format("layout(std140{}) uniform {}", binding, name));
+}
+
+void samplerLine(Stage& stage, const std::string& name, int& index) {
+    int base = stage.interface.bindingBase;
+    std::string layout = base < 0 ? "" : fmt::format("layout(binding = {}) ", base + index++);
+    stage.out.line(fmt::format("{}uniform sampler2D {};", layout, name));
+}
+
+// Both stages declare the same block of contexts, so that one buffer serves both.
+void blocks(Stage& stage, const passes::StageUniforms& used) {
+    auto member = [&](Type type, const std::string& name) {
+        stage.out.line(fmt::format("{} {};", typeName(type), name));
+    };
+    bool readsContexts = false;
+    for (Context c : used.contexts) readsContexts = readsContexts || info(c).type != Type::Texture2D;
+    std::vector<Context> contexts = passes::blockContexts(stage.interface);
+    if (readsContexts) {
+        openBlock(stage, "PrivateUniforms", 0);
+        for (Context c : contexts) member(info(c).type, stage.namer.global(info(c).host));
+        stage.out.close("};");
+        stage.out.line();
+    }
+    int index = contexts.empty() ? 0 : 1;
+    std::vector<Name> values = passes::blockUniforms(stage.module, stage.interface);
+    if (stage.isPixel && !values.empty()) {
+        openBlock(stage, "PublicUniforms", index++);
+        for (Name name : values) {
+            stage.globals[name] = stage.namer.global(stage.module.names->text(name));
+            member(stage.module.uniform(name)->type, stage.globals[name]);
+        }
+        stage.out.close("};");
+        stage.out.line();
+    }
+    for (Context c : used.contexts)
+        if (info(c).type == Type::Texture2D) samplerLine(stage, stage.namer.global(info(c).host), index);
+    for (Name name : used.uniforms)
+        if (const Uniform* u = stage.module.uniform(name); u && u->type == Type::Texture2D) {
+            stage.globals[name] = stage.namer.global(stage.module.names->text(name));
+            samplerLine(stage, stage.globals[name], index);
+        }
+    if (stage.isPixel) stage.out.line();
 }
 
 void uniforms(Stage& stage, const passes::StageUniforms& used) {
-    for (Context c : used.contexts)
-        uniformLine(stage, info(c).type, stage.namer.global(info(c).host), passes::defaultOf(c));
+    if (stage.interface.usesBlocks) return blocks(stage, used);
+    int index = 0;
+    for (Context c : used.contexts) {
+        const std::string& name = stage.namer.global(info(c).host);
+        if (info(c).type == Type::Texture2D)
+            samplerLine(stage, name, index);
+        else
+            uniformLine(stage, info(c).type, name, passes::defaultOf(c));
+    }
     if (!used.contexts.empty() && !used.uniforms.empty()) stage.out.line();
     for (Name name : used.uniforms)
         if (const Uniform* u = stage.module.uniform(name)) {
             std::size_t start = stage.out.size();
             std::string& spelled = stage.globals[name] = stage.namer.global(stage.module.names->text(name));
+            if (u->type == Type::Texture2D) {
+                samplerLine(stage, spelled, index);
+                continue;
+            }
             uniformLine(stage, u->type, spelled, u->values);
             std::size_t value = std::string_view("uniform ").size() + typeName(u->type).size() + 1 + spelled.size();
-            if (!u->values.empty()) stage.apart.emplace_back(start + value, stage.out.size());
+            stage.apart.emplace_back(start + value, stage.out.size());
         }
     if (!used.contexts.empty() || !used.uniforms.empty()) stage.out.line();
 }
+
+// Numbers of bindings came with 4.20.
+void version(Stage& stage) { stage.out.line(stage.interface.bindingBase < 0 ? "#version 400" : "#version 420"); }
 
 void vertexData(Stage& stage, std::string_view direction) {
     if (stage.interface.varyings.empty()) return;
@@ -309,7 +375,7 @@ void vertexData(Stage& stage, std::string_view direction) {
 
 void vertexStage(const Module& module, const passes::ShaderInterface& interface, Sources& sources) {
     Stage stage{module, interface, false, text::Namer(reservedWords())};
-    stage.out.line("#version 400");
+    version(stage);
     stage.out.line();
     uniforms(stage, interface.vertexUniforms);
     for (const passes::VertexInput& in : interface.inputs) {
@@ -326,7 +392,7 @@ void vertexStage(const Module& module, const passes::ShaderInterface& interface,
 void pixelStage(const Module& module, const passes::ShaderInterface& interface, std::string_view title,
                 Sources& sources) {
     Stage stage{module, interface, true, text::Namer(reservedWords())};
-    stage.out.line("#version 400");
+    version(stage);
     stage.out.line();
     if (!title.empty()) {
         std::size_t start = stage.out.size();

@@ -19,10 +19,10 @@ struct Stage {
     bool isPixel;
     text::Namer namer;
     text::Writer out{};
-    std::unordered_map<Name, std::string> globals{};  // uniforms and functions by their names in the module
-    std::unordered_map<Name, std::string> inputs{};   // of the vertex stage, by the names in the interface
-    std::unordered_map<Name, std::string> members{};  // of the block VertexData, by the names of the varyings
-    std::string output{};                             // of the pixel stage
+    std::unordered_map<Name, std::string> globals{};           // uniforms and functions by their names in the module
+    std::unordered_map<Name, std::string> inputs{};            // of the vertex stage, by the names in the interface
+    std::unordered_map<Name, std::string> members{};           // of the block VertexData, by the names of the varyings
+    std::string output{};                                      // of the pixel stage
     std::vector<std::pair<std::size_t, std::size_t>> apart{};  // see Sources
 };
 
