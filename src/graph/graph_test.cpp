@@ -48,6 +48,7 @@ struct NamedBodies final : Bodies {
 
     Name functionOf(doc::NodeDef def, Diagnostics&) override { return definitions.row(def).name; }
     bool takeName(Name name) override { return taken.insert(name).second; }
+    float unitScale(std::string_view, std::string_view) override { return 1; }
     doc::NodeDef colorTransform(std::string_view from, std::string_view to, ir::Type type) override {
         return nodeFor(std::string(from) + "_to_" + std::string(to), type);
     }

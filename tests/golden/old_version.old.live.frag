@@ -90,7 +90,7 @@ void main()
     vec3 V = normalize(u_viewPosition - vd.positionWorld);
     vec3 N = faceforward(normal, -V, normal);
     vec3 specular_lobe_albedo;
-    vec3 radiance = microfacet_light(packed.w * packed.w, N, V, specular_lobe_albedo);
+    vec3 radiance = microfacet_light(packed2.w * packed2.w, N, V, specular_lobe_albedo);
     vec3 v = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
     vec3 light = packed2.x * radiance + (1.0 - specular_lobe_albedo) * (max(packed2.zyx, 0.0) * v);
     out1 = vec4(light * u_envLightIntensity, 1.0);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compile/compile.h"
+#include "doc/file_resolver.h"
 #include "support.h"
 
 namespace shaderx::tests {
@@ -19,8 +20,8 @@ using Json = nlohmann::json;
 class Inspect : public testing::TestWithParam<fs::path> {
   protected:
     void SetUp() override {
-        doc::NoIncludes none;
-        document_ = compiler_.read(GetParam().string(), fileText(GetParam()), none, diagnostics_);
+        doc::FileResolver files;
+        document_ = compiler_.read(GetParam().string(), fileText(GetParam()), files, diagnostics_);
         ASSERT_TRUE(document_) << diagnostics_.text();
     }
 

@@ -113,7 +113,7 @@ TEST_F(Interfaces, LiveUniformsSetByHandAreDocumentsGeneratedAgain) {
         auto document = read(name, fileText(folder() / name)), all = read(name, fileText(folder() / name));
         Shader shader = shaderOf(*document, Interface::Live);
         std::vector<draw::UniformValue> uniforms;
-        const Json reflection = Json::parse(shader.reflection);
+        const Json reflection = Json::parse(shader.reflection());
         for (const Json& u : reflection["uniforms"]) {
             if (u["kind"] != "live" || u["type"] == "integer" || u["type"] == "boolean") continue;
             count++;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/diagnostics.h"
 #include "targets/glsl/glsl.h"
 #include "targets/glsl/names.h"
