@@ -1,4 +1,6 @@
+#include <cmath>
 #include <limits>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -50,6 +52,23 @@ TEST(Numbers, ShortestTextReadsBack) {
     EXPECT_EQ(formatFloat(1.0f), "1");
     for (float v : {0.1f, 1e-38f, 3.4028235e38f, 16777216.0f, -0.0f, 1.0f / 3.0f})
         EXPECT_EQ(parseFloat(formatFloat(v)), v);
+}
+
+// Short decimals go a shorter way than others: the same number with an exponent must give the same float.
+TEST(Numbers, ShortDecimalsAreNearest) {
+    for (std::uint32_t digits = 0; digits < 10000000; digits += 997)
+        for (int places = 0; places <= 7; places++) {
+            std::string whole = std::to_string(digits);
+            while (whole.size() <= static_cast<std::size_t>(places)) whole.insert(0, "0");
+            std::string text = whole;
+            if (places) text.insert(text.size() - static_cast<std::size_t>(places), ".");
+            ASSERT_EQ(parseFloat(text), parseFloat(whole + "e-" + std::to_string(places))) << text;
+        }
+    EXPECT_TRUE(std::signbit(*parseFloat("-0.0")));
+    EXPECT_EQ(parseFloat("-12.5"), -12.5f);
+    EXPECT_EQ(parseFloat("+-0.25"), -0.25f);
+    EXPECT_EQ(parseFloat("16777217"), 16777216.0f);
+    EXPECT_EQ(parseFloat("1.5e2"), 150.0f);
 }
 
 TEST(Numbers, WhatIsNoNumberIsNone) {

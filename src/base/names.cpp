@@ -1,26 +1,36 @@
 #include "base/names.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace shaderx {
 
-static std::string_view imageText(const NameImage& image, std::uint32_t i) {
+static inline std::string_view imageText(const NameImage& image, std::uint32_t i) {
     std::uint32_t begin = i ? image.ends[i - 1] : 0;
     return image.bytes.substr(begin, image.ends[i] - begin);
 }
 
-Name NameTable::inImage(std::string_view text, std::uint32_t hash) const {
+// Most names are short: compared in words, without a call.
+static inline bool isSame(std::string_view a, std::string_view b) {
+    const std::size_t n = a.size();
+    if (b.size() != n) return false;
+    auto same = [&]<class T>(T, std::size_t at) { return loadText<T>(a.data() + at) == loadText<T>(b.data() + at); };
+    if (n > 16) return std::memcmp(a.data(), b.data(), n) == 0;
+    if (n >= 8) return same(std::uint64_t(), 0) && same(std::uint64_t(), n - 8);
+    if (n >= 4) return same(std::uint32_t(), 0) && same(std::uint32_t(), n - 4);
+    return n == 0 || (a[0] == b[0] && a[n / 2] == b[n / 2] && a[n - 1] == b[n - 1]);
+}
+
+inline Name NameTable::inImage(std::string_view text, std::uint32_t hash) const {
     if (image_.slots.empty()) return {};
     const std::uint32_t mask = static_cast<std::uint32_t>(image_.slots.size()) - 1;
     for (std::uint32_t i = hash & mask; image_.slots[i]; i = (i + 1) & mask)
-        if (imageText(image_, image_.slots[i] - 1) == text) return Name(image_.slots[i] - 1);
+        if (isSame(imageText(image_, image_.slots[i] - 1), text)) return Name(image_.slots[i] - 1);
     return {};
 }
 
-std::uint32_t NameTable::slotOf(std::string_view text, std::uint32_t hash) const {
+inline std::uint32_t NameTable::slotOf(std::string_view text, std::uint32_t hash) const {
     std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1, i = hash & mask;
-    while (slots_[i] && texts_[slots_[i] - 1] != text) i = (i + 1) & mask;
+    while (slots_[i] && !isSame(texts_[slots_[i] - 1], text)) i = (i + 1) & mask;
     return i;
 }
 
@@ -32,7 +42,7 @@ Name NameTable::find(std::string_view text) const {
     return found ? Name(imageSize() + found - 1) : Name();
 }
 
-Name NameTable::intern(std::string_view text) {
+Name NameTable::internAny(std::string_view text) {
     const std::uint32_t hash = hashText(text);
     if (Name known = inImage(text, hash)) return known;
     if (texts_.size() * 2 >= slots_.size()) grow();

@@ -1,11 +1,15 @@
 // Interned names: equal text is one 32-bit handle, so comparing names compares numbers.
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "base/handle.h"
@@ -21,12 +25,40 @@ struct NameImage {
     std::string_view bytes;
 };
 
-// Hash of a text; also that of NameImage's slots, so it is part of the library's file format. FNV-1a, with a final mix
-// so that the low bits, which pick the slot, depend on every byte.
+// The bytes at p as a number, the first one lowest: the same when compiling and when running.
+template <class T>
+constexpr T loadText(const char* p) {
+    T word = 0;
+    if (std::is_constant_evaluated() || std::endian::native != std::endian::little) {
+        for (std::size_t i = sizeof(T); i-- > 0;) word = static_cast<T>(word << 8 | static_cast<unsigned char>(p[i]));
+    } else {
+        std::memcpy(&word, p, sizeof(T));
+    }
+    return word;
+}
+
+// A text of at most eight bytes as a number; with its size, it tells the text.
+constexpr std::uint64_t shortText(std::string_view text) {
+    const char* p = text.data();
+    const std::size_t n = text.size();
+    if (n >= 4)  // the halves overlap
+        return loadText<std::uint32_t>(p) | std::uint64_t(loadText<std::uint32_t>(p + n - 4)) << 32;
+    if (n == 0) return 0;
+    auto byte = [p](std::size_t i) { return std::uint64_t(static_cast<unsigned char>(p[i])); };
+    return byte(0) | byte(n / 2) << 8 | byte(n - 1) << 16;
+}
+
+// Hash of a text; also that of NameImage's slots, so it is part of the library's file format. Eight bytes at a time are
+// multiplied by the golden ratio and folded, so that the low bits, which pick the slot, depend on every byte.
 constexpr std::uint32_t hashText(std::string_view text) {
-    std::uint32_t h = 2166136261u;
-    for (char c : text) h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
-    return h ^ (h >> 15);
+    std::uint64_t h = text.size();
+    auto mix = [&h](std::uint64_t word) {
+        h = (h ^ word) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 32;
+    };
+    for (; text.size() > 8; text.remove_prefix(8)) mix(loadText<std::uint64_t>(text.data()));
+    mix(shortText(text));
+    return static_cast<std::uint32_t>(h ^ h >> 17);
 }
 
 // Owns the text of every name. Not thread-safe: one table belongs to one compilation. The empty text is a name too.
@@ -38,7 +70,14 @@ class NameTable {
     NameTable(const NameTable&) = delete;
     NameTable& operator=(const NameTable&) = delete;
 
-    Name intern(std::string_view text);
+    Name intern(std::string_view text) {
+        if (text.size() > 8) return internAny(text);
+        const std::uint64_t word = shortText(text);
+        Recent& r = recent_[word * 0x9e3779b97f4a7c15u >> 56];
+        if (r.word != word || r.size != text.size())
+            r = {word, static_cast<std::uint32_t>(text.size()), internAny(text)};
+        return r.name;
+    }
     // The name of a text if it was interned before, else none.
     Name find(std::string_view text) const;
     // Valid as long as the table. An absent name reads as the empty text.
@@ -46,6 +85,14 @@ class NameTable {
     std::uint32_t size() const { return imageSize() + static_cast<std::uint32_t>(texts_.size()); }
 
   private:
+    // Documents say the same few words again and again: the last short text of a hash is found without a search.
+    struct Recent {
+        std::uint64_t word = 0;
+        std::uint32_t size = Name::kNone;
+        Name name;
+    };
+
+    Name internAny(std::string_view text);
     std::uint32_t imageSize() const { return static_cast<std::uint32_t>(image_.ends.size()); }
     Name inImage(std::string_view text, std::uint32_t hash) const;
     std::uint32_t slotOf(std::string_view text, std::uint32_t hash) const;
@@ -53,6 +100,7 @@ class NameTable {
     std::string_view store(std::string_view text);
 
     NameImage image_;
+    std::array<Recent, 256> recent_{};
     std::vector<std::string_view> texts_;
     std::vector<std::uint32_t> slots_;  // as in NameImage, for the names after the image's
     std::vector<std::unique_ptr<char[]>> chunks_;

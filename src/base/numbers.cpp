@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 #include <fast_float/fast_float.h>
 #include <fmt/compile.h>
@@ -13,18 +14,53 @@ std::string formatFloat(float value) {
     return std::string(text, fmt::format_to(text, FMT_COMPILE("{}"), value));
 }
 
+static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+static bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
 std::string_view trim(std::string_view text) {
-    std::size_t a = text.find_first_not_of(" \t\r\n");
-    if (a == std::string_view::npos) return {};
-    return text.substr(a, text.find_last_not_of(" \t\r\n") - a + 1);
+    while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+// Most numbers are a few digits around a point. Where the digits as one integer and the power of ten are both exact
+// floats, their quotient is the nearest float, since a division rounds once.
+static const char* readShortDecimal(const char* at, const char* end, float& value) {
+    constexpr float kPowers[] = {1, 1e1f, 1e2f, 1e3f, 1e4f, 1e5f, 1e6f, 1e7f};
+    constexpr std::ptrdiff_t kMostDigits = 7;  // below 2^24
+    std::uint32_t digits = 0;
+    const char *first = at, *stop = end - at > kMostDigits + 1 ? at + kMostDigits + 1 : end;
+    for (; at != stop && isDigit(*at); at++) digits = digits * 10 + static_cast<std::uint32_t>(*at - '0');
+    std::ptrdiff_t whole = at - first, places = 0;
+    if (whole == 0) return nullptr;
+    if (at != stop && *at == '.') {
+        const char* point = at++;
+        for (; at != stop && isDigit(*at); at++) digits = digits * 10 + static_cast<std::uint32_t>(*at - '0');
+        places = at - point - 1;
+        if (places == 0) return nullptr;
+    }
+    if (whole + places > kMostDigits) return nullptr;
+    if (at != end && (isDigit(*at) || *at == '.' || *at == 'e' || *at == 'E')) return nullptr;
+    value = static_cast<float>(digits) / kPowers[places];
+    return at;
+}
+
+const char* readFloat(const char* at, const char* end, float& value) {
+    if (at != end && *at == '+') at++;
+    const bool negative = at != end && *at == '-';
+    if (const char* rest = readShortDecimal(at + negative, end, value)) {
+        if (negative) value = -value;
+        return rest;
+    }
+    auto r = fast_float::from_chars(at, end, value);
+    return r.ec == std::errc() && std::isfinite(value) ? r.ptr : nullptr;
 }
 
 std::optional<float> parseFloat(std::string_view text) {
     text = trim(text);
-    if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+    const char* end = text.data() + text.size();
     float value = 0;
-    auto r = fast_float::from_chars(text.data(), text.data() + text.size(), value);
-    if (r.ec != std::errc() || r.ptr != text.data() + text.size() || !std::isfinite(value)) return {};
+    if (text.empty() || readFloat(text.data(), end, value) != end) return {};
     return value;
 }
 

@@ -50,7 +50,8 @@ bool interfaceNamed(std::string_view name, Interface& interface) {
 }
 
 struct Compiler::State {
-    explicit State(std::span<const std::uint8_t> image) : names(namesOf(image)), builtin(openLibrary(names, image)) {}
+    explicit State(std::span<const std::uint8_t> image)
+        : names(namesOf(image)), known(names), builtin(openLibrary(names, image)) {}
 
     std::vector<Library*> libraries() const {
         std::vector<Library*> all;
@@ -66,6 +67,7 @@ struct Compiler::State {
     }
 
     NameTable names;
+    doc::WellKnown known;
     std::unique_ptr<Library> builtin;
     std::vector<std::unique_ptr<Library>> user;
 };
@@ -75,7 +77,9 @@ Compiler::~Compiler() = default;
 
 NameTable& Compiler::names() { return state_->names; }
 
-std::unique_ptr<doc::Document> Compiler::newDocument() { return std::make_unique<doc::Document>(state_->names); }
+std::unique_ptr<doc::Document> Compiler::newDocument() { 
+    return std::make_unique<doc::Document>(state_->names, state_->known);
+}
 
 // Runs a step of the public interface: a bug of ours becomes a diagnostic here.
 template <class F>

@@ -12,7 +12,7 @@ namespace shaderx {
 
 namespace {
 
-constexpr std::uint32_t kMagic = 0x53584c42, kVersion = 1;
+constexpr std::uint32_t kMagic = 0x53584c42, kVersion = 2;
 
 enum Section : std::uint32_t {
     NameEnds,

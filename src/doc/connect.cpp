@@ -82,22 +82,9 @@ bool isNode(const Document& d, ElementId element) {
     const Element& e = d[element];
     if (!e.parent || !e.category) return false;
     if (e.parent != d.root() && d[e.parent].category != d.known().nodegraph) return false;
-    const WellKnown& k = d.known();
-    if (e.category == k.input || e.category == k.output || e.category == k.nodegraph || e.category == k.nodedef)
-        return false;
+    if (d.known().isFormat(e.category)) return false;
     std::string_view text = d.text(e.category);
-    if (text.empty() || text[0] == '#') return false;
-    constexpr std::string_view kFormat[] = {
-        "parameter",   "token",     "implementation", "look",        "lookgroup", "materialassign",
-        "collection",  "geominfo",  "geomprop",       "geompropdef", "typedef",   "unitdef",
-        "unittypedef", "targetdef", "attributedef",   "propertyset", "property",  "propertyassign",
-        "variantset",  "variant",   "variantassign",  "visibility",  "backdrop",  "xi:include",
-        "materialx",   "member",    "unit",           "geomattr",    "opgraph",   "shader",
-        "material",    "shaderref",
-    };
-    for (std::string_view f : kFormat)
-        if (f == text) return false;
-    return true;
+    return !text.empty() && text[0] != '#';
 }
 
 }  // namespace shaderx::doc

@@ -46,9 +46,21 @@ WellKnown::WellKnown(NameTable& names)
       trueValue(names.intern("true")),
       out(names.intern("out")),
       defaultgeomprop(names.intern("defaultgeomprop")),
-      surfaceshader(names.intern("surfaceshader")) {}
+      surfaceshader(names.intern("surfaceshader")) {
+    constexpr std::string_view kFormat[] = {
+        "input",       "output",    "nodegraph",      "nodedef",     "parameter",     "token",
+        "look",        "lookgroup", "implementation", "collection",  "materialassign", "geominfo",
+        "geomprop",    "geompropdef", "typedef",      "unitdef",     "unittypedef",   "targetdef",
+        "attributedef", "propertyset", "property",    "propertyassign", "variantset", "variant",
+        "variantassign", "visibility", "backdrop",    "xi:include",  "materialx",     "member",
+        "unit",        "geomattr",  "opgraph",        "shader",      "material",      "shaderref",
+    };
+    static_assert(std::size(kFormat) == std::tuple_size_v<decltype(format)>);
+    std::transform(std::begin(kFormat), std::end(kFormat), format.begin(),
+                   [&](std::string_view word) { return names.intern(word); });
+}
 
-Document::Document(NameTable& names) : names_(names), known_(names) {
+Document::Document(NameTable& names, const WellKnown& known) : names_(names), known_(known) {
     addElement(known_.materialx, {});
     addAttribute(root(), known_.version, names.intern("1.39"));
 }
@@ -120,7 +132,7 @@ static std::uint32_t hashChild(ElementId parent, Name name) {
 }
 
 // Makes room, and drops what renaming and removing have left behind.
-void Document::growIndex() const {
+void Document::growIndex(std::size_t more) const {
     std::vector<std::uint32_t> entries;
     for (std::uint32_t s : slots_)
         if (s && elements_[s - 1].parent && elements_[s - 1].name) entries.push_back(s - 1);
@@ -128,19 +140,29 @@ void Document::growIndex() const {
     std::sort(entries.begin(), entries.end());
     entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
     std::size_t size = 256;
-    while (size < entries.size() * 4) size *= 2;
+    while (size < (entries.size() + more) * 2) size *= 2;
     slots_.assign(size, 0);
     slotsUsed_ = 0;
     for (std::uint32_t i : entries) indexName(ElementId(i));
 }
 
 void Document::indexName(ElementId id) const {
-    if (slotsUsed_ * 2 >= slots_.size()) growIndex();
+    if (slotsUsed_ * 2 >= slots_.size()) growIndex(slotsUsed_ + 1);
     const Element& e = elements_[id.index];
     std::size_t mask = slots_.size() - 1, at = hashChild(e.parent, e.name) & mask;
     while (slots_[at]) at = (at + 1) & mask;
     slots_[at] = id.index + 1;
     slotsUsed_++;
+}
+
+void Document::indexChildren(ElementId parent) const {
+    if (indexed_.size() < elements_.size()) indexed_.resize(elements_.size());
+    indexed_[parent.index] = true;
+    std::size_t count = 0;
+    for (ElementId c : children(*this, parent)) count += static_cast<bool>(elements_[c.index].name);
+    if ((slotsUsed_ + count) * 2 > slots_.size()) growIndex(count);
+    for (ElementId c : children(*this, parent))
+        if (elements_[c.index].name) indexName(c);
 }
 
 ElementId Document::child(ElementId parent, Name name) const {
@@ -152,10 +174,7 @@ ElementId Document::child(ElementId parent, Name name) const {
         for (; c && left; c = elements_[c.index].next, left--)
             if (elements_[c.index].name == name) return c;
         if (!c) return {};
-        if (indexed_.size() < elements_.size()) indexed_.resize(elements_.size());
-        indexed_[parent.index] = true;
-        for (ElementId d : children(*this, parent))
-            if (elements_[d.index].name) indexName(d);
+        indexChildren(parent);
     }
     if (slots_.empty()) return {};
     std::size_t mask = slots_.size() - 1;

@@ -1,6 +1,8 @@
 // A MaterialX document: elements in one flat vector, linked by indices, all text interned.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -39,14 +41,20 @@ struct Source {
     Name version;           // of its root element, may be none
 };
 
-// The names that this room compares with, interned once a document so that hot paths compare handles.
+// The names that this room compares with, interned once so that hot paths compare handles.
 struct WellKnown {
     explicit WellKnown(NameTable& names);
+
+    // Categories that the format itself uses, which no node can have.
+    bool isFormat(Name category) const { return std::count(format.begin(), format.end(), category) != 0; }
 
     Name name, type, value, nodename, nodegraph, output, interfacename, nodedef, node, input, parameter, token;
     Name implementation, version, isdefaultversion, target, inherit, colorspace, fileprefix, namespaceName, file;
     Name function, sourcecode, channels, text, material, look, lookgroup, materialassign, collection, multioutput;
     Name materialx, include, comment, textNode, cdata, pi, doctype, trueValue, out, defaultgeomprop, surfaceshader;
+
+  private:
+    std::array<Name, 36> format;
 };
 
 // Owns its elements while it is edited, or views a library's arrays read only. Lookups fill an index on the way, so a
@@ -54,7 +62,9 @@ struct WellKnown {
 class Document {
   public:
     // An empty document: a root <materialx version="1.39">.
-    explicit Document(NameTable& names);
+    explicit Document(NameTable& names) : Document(names, WellKnown(names)) {}
+    // The same for a table whose well-known names are at hand.
+    Document(NameTable& names, const WellKnown& known);
     // A read-only view of arrays that outlive it; element 0 is the root. Names refer to `names`.
     Document(NameTable& names, std::span<const Element> elements, std::span<const Attribute> attributes);
     Document(const Document&) = delete;
@@ -130,8 +140,9 @@ class Document {
     ElementId addElement(Name category, ElementId parent);
     void addAttribute(ElementId id, Name attr, Name value);
     void refresh();
+    void indexChildren(ElementId parent) const;
     void indexName(ElementId id) const;
-    void growIndex() const;
+    void growIndex(std::size_t more) const;
 
     NameTable& names_;
     WellKnown known_;

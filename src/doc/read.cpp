@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -26,16 +27,33 @@ class DocumentFiller {
         d_.ownAttributes_.reserve(attributes);
         d_.refresh();
     }
+    // An attribute of the element that is added next.
+    void attribute(Name name, Name value) {
+        d_.ownAttributes_.push_back({name, value});
+        pending_++;
+    }
+    std::span<const Attribute> pending() const {
+        return std::span<const Attribute>(d_.ownAttributes_).last(pending_);
+    }
     ElementId add(Name category, ElementId parent, std::uint32_t source, std::size_t offset) {
         ElementId id = d_.addElement(category, parent);
-        place(id, source, offset);
+        complete(id, source, offset);
         return id;
     }
-    void place(ElementId id, std::uint32_t source, std::size_t offset) {
-        d_.ownElements_[id.index].source = source;
-        d_.ownElements_[id.index].offset = static_cast<std::uint32_t>(offset);
+    // Gives the newest element its attributes and its place.
+    void complete(ElementId id, std::uint32_t source, std::size_t offset) {
+        Element& e = d_.ownElements_[id.index];
+        e.source = source;
+        e.offset = static_cast<std::uint32_t>(offset);
+        e.attributeCount = static_cast<std::uint32_t>(pending_);
+        e.firstAttribute = static_cast<std::uint32_t>(d_.ownAttributes_.size() - pending_);
+        for (const Attribute& a : pending()) {
+            if (a.name == d_.known_.name) e.name = a.value;
+            if (a.name == d_.known_.namespaceName) d_.hasNamespaces_ = true;
+        }
+        pending_ = 0;
+        d_.refresh();
     }
-    void attribute(ElementId id, Name name, Name value) { d_.addAttribute(id, name, value); }
     // Comments before the root (`last` is none at first) and after it.
     void chain(ElementId& last, ElementId id) {
         (last ? d_.ownElements_[last.index].next : d_.prologue_) = id;
@@ -45,6 +63,7 @@ class DocumentFiller {
 
   private:
     Document& d_;
+    std::size_t pending_ = 0;
 };
 
 namespace {
@@ -59,7 +78,8 @@ struct Inheritance {
 // A file being merged: what is left of it.
 struct Frame {
     std::unique_ptr<pugi::xml_document> xml;
-    pugi::xml_node top, at;  // the root element in it, and what comes next; none at the end
+    pugi::xml_node top, at;      // the root element in it, and what comes next; none at the end
+    const char* text = nullptr;  // what the offsets of its elements count from
     std::uint32_t source = 0;
     ElementId parent;  // of the elements to come
     std::uint32_t depth = 0;
@@ -121,7 +141,7 @@ struct Reader {
     bool parse(std::uint32_t source, pugi::xml_document& xml);
     bool checkRoot(std::uint32_t source, pugi::xml_node root);
     bool openFile(std::string file, std::string text, std::string directory, ElementId mark);
-    void attributes(ElementId id, pugi::xml_node n, const Frame& f, bool topLevel);
+    void attributes(pugi::xml_node n, const Frame& f, bool topLevel);
     ElementId convert(pugi::xml_node n, ElementId parent, const Frame& f, bool topLevel);
     void include(ElementId mark);
     void merge();
@@ -196,9 +216,13 @@ bool Reader::checkRoot(std::uint32_t source, pugi::xml_node root) {
     return false;
 }
 
-void Reader::attributes(ElementId id, pugi::xml_node n, const Frame& f, bool topLevel) {
+// The attributes of the element that comes next.
+void Reader::attributes(pugi::xml_node n, const Frame& f, bool topLevel) {
     bool passes = topLevel && f.source != 0;
-    Name found[64];  // of the attributes so far, to find doubles
+    auto has = [&](Name name) {
+        auto all = fill.pending();
+        return std::any_of(all.begin(), all.end(), [&](const Attribute& a) { return a.name == name; });
+    };
     std::size_t count = 0;
     for (pugi::xml_attribute a = n.first_attribute(); a; a = a.next_attribute(), count++) {
         std::string_view text = a.value();
@@ -213,20 +237,17 @@ void Reader::attributes(ElementId id, pugi::xml_node n, const Frame& f, bool top
             continue;
         }
         Name name = names.intern(a.name()), value = names.intern(text);
-        bool twice = count <= std::size(found) ? std::find(found, found + count, name) != found + count
-                                               : static_cast<bool>(document.attribute(id, name));
-        if (count < std::size(found)) found[count] = name;
-        if (twice) {
+        if (has(name)) {
             error("duplicate-attribute", fmt::format("<{}> has the attribute '{}' twice", n.name(), a.name()), f.source,
                   offsetOf(n));
             continue;
         }
         if (passes && name == known.name) value = document.qualified(f.passed.space, value);
-        fill.attribute(id, name, value);
+        fill.attribute(name, value);
     }
     if (!passes) return;
     auto pass = [&](Name attr, Name value) {
-        if (value && !document.attribute(id, attr)) fill.attribute(id, attr, value);
+        if (value && !has(attr)) fill.attribute(attr, value);
     };
     pass(known.fileprefix, f.passed.fileprefix);
     pass(known.colorspace, f.passed.colorspace);
@@ -237,9 +258,12 @@ void Reader::attributes(ElementId id, pugi::xml_node n, const Frame& f, bool top
 ElementId Reader::convert(pugi::xml_node n, ElementId parent, const Frame& f, bool topLevel) {
     Name category;
     switch (n.type()) {
-        case pugi::node_element:
-            category = names.intern(n.name());
-            break;
+        case pugi::node_element: {
+            const char* name = n.name();
+            category = names.intern(name);
+            attributes(n, f, topLevel);
+            return fill.add(category, parent, f.source, static_cast<std::size_t>(name - f.text - 1));
+        }
         case pugi::node_comment:
             category = known.comment;
             break;
@@ -260,12 +284,8 @@ ElementId Reader::convert(pugi::xml_node n, ElementId parent, const Frame& f, bo
         case pugi::node_declaration:
             return {};
     }
+    fill.attribute(known.text, names.intern(n.value()));
     ElementId id = fill.add(category, parent, f.source, offsetOf(n));
-    if (n.type() == pugi::node_element) {
-        attributes(id, n, f, topLevel);
-        return id;
-    }
-    fill.attribute(id, known.text, names.intern(n.value()));
     if (n.type() == pugi::node_pi) fill.setName(id, names.intern(n.name()));
     return id;
 }
@@ -294,6 +314,7 @@ bool Reader::openFile(std::string file, std::string text, std::string directory,
     if (!checkRoot(*source, f.top)) return false;
     f.source = *source;
     f.at = f.top.first_child();
+    f.text = f.top.name() - f.top.offset_debug();
     if (mark) {
         f.parent = document[mark].parent;
         const Inheritance& outer = frames.back().passed;
@@ -305,8 +326,8 @@ bool Reader::openFile(std::string file, std::string text, std::string directory,
                     own("namespace", outer.space)};
     } else {
         f.parent = document.root();
-        fill.place(f.parent, *source, offsetOf(f.top));
-        attributes(f.parent, f.top, f, false);
+        attributes(f.top, f, false);
+        fill.complete(f.parent, *source, offsetOf(f.top));
         outside(*f.xml, *source);
     }
     frames.push_back(std::move(f));

@@ -1,5 +1,6 @@
 #include "doc/upgrade.h"
 
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -285,6 +286,7 @@ void Upgrader::run() {
     for (const Source& s : d.sources()) minors.push_back(s.version ? minorOf(s.version) : 39);
     Name version = d.attribute(d.root(), k.version);
     rootMinor = version ? minorOf(version) : 39;
+    if (rootMinor >= 39 && std::all_of(minors.begin(), minors.end(), [](int minor) { return minor >= 39; })) return;
     std::uint32_t count = static_cast<std::uint32_t>(d.size());  // elements that are added are new already
     auto each = [&](int before, auto change) {
         for (std::uint32_t i = 0; i < count; i++)
