@@ -26,7 +26,6 @@ class Oracle : public testing::TestWithParam<Case> {
     }
 
     std::unique_ptr<draw::Context> context_;
-    Compiler compiler_{builtinLibrary()};
 };
 
 // Root of the mean squared difference of the colours, values beyond 4 taken as 4.
@@ -41,39 +40,84 @@ double difference(const Image& a, const Image& b) {
     return std::sqrt(sum / (3.0 * a.width * a.height));
 }
 
-TEST_P(Oracle, DrawsWhatTheDriverDraws) {
-    fs::path folder = fs::path(SHADERX_SOURCE_DIR) / "examples", file = folder / GetParam().file;
-    Diagnostics diagnostics;
+// Draws every element of a document both ways. How many there were.
+int compareAll(draw::Context& context, const fs::path& file, Interface interface, const scene::Settings& scene,
+               Diagnostics& diagnostics) {
+    Compiler compiler(builtinLibrary());
     doc::FileResolver resolver(std::vector<std::string>{});
-    auto document = compiler_.read(file.string(), fileText(file), resolver, diagnostics);
-    ASSERT_TRUE(document) << diagnostics.text();
+    auto document = compiler.read(file.string(), fileText(file), resolver, diagnostics);
+    EXPECT_TRUE(document) << diagnostics.text();
+    if (!document) return 0;
     GenerateOptions how;
-    how.interface = GetParam().interface;
-    Result<Shader> shader =
-        compiler_.generate(*document, compiler_.renderableElements(*document).at(0), how, diagnostics);
-    ASSERT_TRUE(shader) << diagnostics.text();
+    how.interface = interface;
+    const auto elements = compiler.renderableElements(*document);
+    for (const auto element : elements) {
+        const std::string name = file.filename().string() + " " + document->path(element);
+        Result<Shader> shader = compiler.generate(*document, element, how, diagnostics);
+        EXPECT_TRUE(shader) << name << diagnostics.text();
+        if (!shader) continue;
+        scene::Settings settings = scene;
+        for (const TextureBinding& t : shader->textures)
+            settings.textures.push_back(
+                {t.uniform, (file.parent_path() / t.file).string(), t.uAddress, t.vAddress, t.filter, {}, t.path});
+        Result<Image> driver = context.render(draw::Job{settings, shader->vertex, shader->pixel}, diagnostics);
+        Result<Image> ours =
+            oracle::render({settings, &shader->program->module, &shader->program->interface}, diagnostics);
+        EXPECT_TRUE(driver && ours) << name << diagnostics.text();
+        if (!driver || !ours) continue;
+        EXPECT_LT(difference(*driver, *ours), 1e-3) << name;
+    }
+    return static_cast<int>(elements.size());
+}
+
+TEST_P(Oracle, DrawsWhatTheDriverDraws) {
     scene::Settings settings;
     settings.size = 32;
     settings.samples = 64;
-    for (const TextureBinding& t : shader->textures)
-        settings.textures.push_back(
-            {t.uniform, (folder / t.file).string(), t.uAddress, t.vAddress, t.filter, {}, t.path});
-    Result<Image> driver = context_->render(draw::Job{settings, shader->vertex, shader->pixel}, diagnostics);
-    Result<Image> ours = oracle::render({settings, &shader->program->module, &shader->program->interface}, diagnostics);
-    ASSERT_TRUE(driver && ours) << diagnostics.text();
+    Diagnostics diagnostics;
+    const fs::path file = fs::path(SHADERX_SOURCE_DIR) / "examples" / GetParam().file;
+    EXPECT_EQ(compareAll(*context_, file, GetParam().interface, settings, diagnostics), 1);
     EXPECT_EQ(diagnostics.text(), "");
-    EXPECT_LT(difference(*driver, *ours), 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Examples, Oracle,
-                         testing::Values(Case{"ceramic.mtlx", Interface::Live},
-                                         Case{"lacquered_wood.mtlx", Interface::Live},
-                                         Case{"lacquered_wood.mtlx", Interface::Complete},
-                                         Case{"soap_film.mtlx", Interface::Complete}),
-                         [](const auto& which) {
-                             std::string name = fs::path(which.param.file).stem().string();
-                             return name + (which.param.interface == Interface::Live ? "_live" : "_complete");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Examples, Oracle,
+    testing::Values(Case{"ceramic.mtlx", Interface::Live}, Case{"lacquered_wood.mtlx", Interface::Live},
+                    Case{"lacquered_wood.mtlx", Interface::Complete}, Case{"soap_film.mtlx", Interface::Complete},
+                    Case{"peach.mtlx", Interface::Live}, Case{"anodised_titanium.mtlx", Interface::Live}),
+    [](const auto& which) {
+        std::string name = fs::path(which.param.file).stem().string();
+        return name + (which.param.interface == Interface::Live ? "_live" : "_complete");
+    });
+
+// MaterialX's example materials, a path each; an empty one where they are not here.
+std::vector<fs::path> materialXExamples() {
+    const fs::path folder = fs::path(SHADERX_SOURCE_DIR) / "../shared/resources/Materials/Examples";
+    std::vector<fs::path> files;
+    if (fs::is_directory(folder))
+        for (const auto& entry : fs::recursive_directory_iterator(folder))
+            if (entry.path().extension() == ".mtlx") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    if (files.empty()) files.emplace_back();
+    return files;
+}
+
+class OracleOfMaterialX : public testing::TestWithParam<fs::path> {};
+
+// Few samples: one that goes astray shows the more.
+TEST_P(OracleOfMaterialX, DrawsWhatTheDriverDraws) {
+    if (GetParam().empty()) GTEST_SKIP() << "MaterialX's example materials are not here";
+    Diagnostics diagnostics;
+    auto context = draw::Context::create(diagnostics);
+    if (!context) GTEST_SKIP() << "no graphics driver here: " << diagnostics.text();
+    scene::Settings settings;
+    settings.size = 32;
+    settings.samples = 16;
+    EXPECT_GT(compareAll(*context, GetParam(), Interface::Live, settings, diagnostics), 0);
+    EXPECT_FALSE(diagnostics.hasErrors()) << diagnostics.text();
+}
+
+INSTANTIATE_TEST_SUITE_P(All, OracleOfMaterialX, testing::ValuesIn(materialXExamples()), testName);
 
 }  // namespace
 }  // namespace shaderx::tests

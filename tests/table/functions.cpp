@@ -116,6 +116,7 @@ struct Maker {
         if (!out.empty()) return out;
         if (text(p.name).find("space") != std::string_view::npos) return {"world", "object", "model"};
         if (text(p.name) == "scatter_mode") return {"R", "T", "RT"};
+        if (text(p.name) == "mode") return {"conty_kulla", "zeltner"};
         if (text(p.name) == "geomprop") return {fmt::format("table_{}", info(f.results[0].type).name)};
         return {std::string(attribute(input, "value"))};
     }
