@@ -29,7 +29,7 @@ color fresnel_reflectance(float c, color u, color w)
     return toward / max(away, 1e-12);
 }
 
-// Reflectance of a conductor of index n + ik for unpolarised light; exact, for c above 0. Written out, the squares of the
+// Reflectance of a conductor of index n + ik for unpolarised light; exact for positive c. Written out, the squares of the
 // amplitudes for p- and s-polarised light have a ratio that needs no further root.
 color fresnel_conductor(float c, color n, color k)
 {

@@ -150,7 +150,7 @@ vec3 microfacet_light(vec2 roughness, vec3 N, vec3 V, vec3 X, out vec3 albedo)
     return light * (all2 / total);
 }
 
-// Reflectance of a conductor of index n + ik for unpolarised light; exact, for c above 0. Written out, the squares of
+// Reflectance of a conductor of index n + ik for unpolarised light; exact for positive c. Written out, the squares of
 // the amplitudes for p- and s-polarised light have a ratio that needs no further root.
 vec3 fresnel_conductor(float c, vec3 n, vec3 k)
 {

@@ -55,7 +55,7 @@ in VertexData
 
 out vec4 out1;
 
-// Reflectance of a conductor of index n + ik for unpolarised light; exact, for c above 0. Written out, the squares of
+// Reflectance of a conductor of index n + ik for unpolarised light; exact for positive c. Written out, the squares of
 // the amplitudes for p- and s-polarised light have a ratio that needs no further root.
 vec3 fresnel_conductor(float c, vec3 n, vec3 k)
 {
