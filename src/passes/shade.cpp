@@ -221,7 +221,7 @@ struct Shader {
         for (std::uint32_t i = root.index + 1; i-- > 0;)
             if (needed[i] && !throughput[i])
                 for (ExprId o : from.operandsOf(from.exprs[i]))
-                    if (isClosure(from[o].type)) needed[o.index] = true;
+                    if (from[o].type == from[root].type) needed[o.index] = true;  // a volume below is not in the way
         for (std::uint32_t i = 0; i <= root.index; i++)
             if (needed[i] && !throughput[i]) throughput[i] = passedBy(ExprId(i));
         return throughput[root.index];
