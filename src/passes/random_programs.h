@@ -5,12 +5,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "ir/builder.h"
 #include "ir/interpret.h"
+#include "passes/dice.h"
 
 namespace shaderx::passes {
 
@@ -27,7 +27,7 @@ struct Sample {
 // values to share, selects, nested loops, calls of the functions made before.
 class RandomProgram {
   public:
-    RandomProgram(ir::Module& module, std::uint32_t seed) : module_(module), rng_(seed) {
+    RandomProgram(ir::Module& module, Dice dice) : module_(module), dice_(dice) {
         for (ir::Type t : {ir::Type::Float, ir::Type::Color3, ir::Type::Integer, ir::Type::Boolean}) {
             ir::Uniform u;
             u.name = module_.names->intern("u" + std::to_string(module_.uniforms.size()));
@@ -53,7 +53,7 @@ class RandomProgram {
         for (int i = 0; i < ir::componentCount(type); i++) v.words[i] = word(type);
         return v;
     }
-    std::uint32_t roll(std::uint32_t n) { return static_cast<std::uint32_t>(rng_() % n); }
+    std::uint32_t roll(std::uint32_t n) { return dice_.roll(n); }
 
   private:
     struct Made {
@@ -136,7 +136,7 @@ class RandomProgram {
     void result(ir::Function& f, ir::Type wanted, std::vector<Sample>& samples);
 
     ir::Module& module_;
-    std::mt19937 rng_;
+    Dice dice_;
     ir::Builder* b_ = nullptr;
     std::vector<Sample> pool_;
     std::vector<Made> made_;

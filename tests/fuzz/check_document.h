@@ -6,7 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "graph/lower.h"
+
 namespace shaderx::fuzz {
+
+using graph::Interface;
+
+// The interfaces take turns.
+inline Interface interfaceFor(std::uint32_t seed) {
+    return seed % 4 == 3 ? Interface::Complete : seed % 2 ? Interface::Baked : Interface::Live;
+}
 
 struct Verdict {
     std::string failure;  // the first one, empty where all is well
@@ -21,8 +30,9 @@ struct Verdict {
 //
 // How pictures are compared: the interpreter runs a program several times with random rounding (wobble.h). Where the
 // runs lie within 2 % of each other they must enclose the driver's value, with as much again on both sides and 2e-5
-// more; else the component is excused, and counted. Before a value counts as wrong, 60 more runs are made. The two
-// interfaces are compared likewise, with 5 % where reflections are sampled: their few samples need not be the same,
+// more (1e-3 where reflections are sampled: which level of detail a sample has depends on functions that drivers
+// approximate); else the component is excused, and counted. Before a value counts as wrong, 60 more runs are made. The
+// two interfaces are compared likewise, with 5 % where reflections are sampled: their few samples need not be the same,
 // and only many have to agree.
 class DocumentChecker {
   public:
@@ -33,7 +43,7 @@ class DocumentChecker {
     // Files that documents may name.
     const std::vector<std::string>& pictures() const;
 
-    Verdict check(const std::string& text, bool drawBaked);
+    Verdict check(const std::string& text, Interface drawn);
 
   private:
     struct State;

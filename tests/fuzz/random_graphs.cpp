@@ -1,5 +1,5 @@
 // random_graphs [COUNT] [FIRST_SEED] [--print]: random documents, each checked as a whole. Those that fail are written
-// to the current folder.
+// to the current folder. random_graphs FILE.mtlx…: these documents, drawn with every interface.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -8,6 +8,7 @@
 #include "compile/compile.h"
 #include "fuzz/check_document.h"
 #include "fuzz/random_document.h"
+#include "support.h"
 
 using namespace shaderx;
 
@@ -18,7 +19,19 @@ static void write(const std::string& file, const std::string& text) {
     }
 }
 
+static int checkFiles(int argc, char** argv) {
+    fuzz::DocumentChecker checker;
+    int failed = 0;
+    for (int i = 1; i < argc; i++)
+        for (Interface drawn : {Interface::Live, Interface::Baked, Interface::Complete}) {
+            const fuzz::Verdict v = checker.check(tests::fileText(argv[i]), drawn);
+            if (!v.failure.empty()) failed = 1, std::printf("%s: %s\n", argv[i], v.failure.c_str());
+        }
+    return failed;
+}
+
 int main(int argc, char** argv) {
+    if (argc > 1 && std::string_view(argv[1]).ends_with(".mtlx")) return checkFiles(argc, argv);
     const auto number = [&](int i, unsigned long usual) {
         return argc > i ? std::strtoul(argv[i], nullptr, 10) : usual;
     };
@@ -33,7 +46,7 @@ int main(int argc, char** argv) {
         const std::string text = fuzz::randomDocument(nodes, passes::Dice(seed), checker.pictures());
         if (prints) std::puts(text.c_str());
         const auto start = std::chrono::steady_clock::now();
-        const fuzz::Verdict v = checker.check(text, seed % 2);
+        const fuzz::Verdict v = checker.check(text, fuzz::interfaceFor(seed));
         const double s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         if (prints || s > 5) std::printf("seed %u: %.1f s\n", seed, s);
         compared += v.compared, excused += v.excused;

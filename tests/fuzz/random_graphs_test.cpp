@@ -24,7 +24,7 @@ TEST_P(RandomGraphs, AreRight) {
     std::size_t compared = 0, excused = 0;
     for (std::uint32_t seed = first; seed < first + kSeeds; seed++) {
         const std::string text = randomDocument(nodes(), passes::Dice(seed), checker.pictures());
-        const Verdict v = checker.check(text, seed % 2);
+        const Verdict v = checker.check(text, interfaceFor(seed));
         EXPECT_EQ(v.failure, "") << "seed " << seed << "\n" << text;
         compared += v.compared, excused += v.excused;
     }
@@ -63,7 +63,8 @@ class Kept : public testing::TestWithParam<tests::fs::path> {};
 
 TEST_P(Kept, IsRight) {
     DocumentChecker checker;
-    for (bool baked : {false, true}) EXPECT_EQ(checker.check(tests::fileText(GetParam()), baked).failure, "");
+    for (Interface i : {Interface::Live, Interface::Baked, Interface::Complete})
+        EXPECT_EQ(checker.check(tests::fileText(GetParam()), i).failure, "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Documents, Kept,

@@ -393,7 +393,7 @@ TEST(Print, RandomProgramsCompile) {
     for (std::uint32_t seed = 0; seed < 60 && !testing::Test::HasFailure(); seed++) {
         NameTable names;
         Module module(names);
-        passes::RandomProgram random(module, seed);
+        passes::RandomProgram random(module, passes::Dice(seed));
         for (int k = 0; k < 3; k++) random.function("f" + std::to_string(k), 4 + seed);
         random.function("main", 4 + seed, Type::Vector4, false);
         Name entry = names.intern("main");
@@ -415,7 +415,7 @@ TEST(Legalise, KeepsValues) {
     for (std::uint32_t seed = 0; seed < 300 && !testing::Test::HasFailure(); seed++) {
         NameTable names;
         Module module(names);
-        passes::RandomProgram random(module, seed);
+        passes::RandomProgram random(module, passes::Dice(seed));
         for (int k = 0; k < 2; k++) random.function("f" + std::to_string(k), 3 + seed / 8);
         Function& f = random.function("main", 3 + seed / 8);
         std::vector<Value> arguments;

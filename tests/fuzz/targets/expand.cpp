@@ -1,0 +1,18 @@
+// passes/expand keeps programs valid and their values.
+#include "passes/expand.h"
+
+#include "fuzz/fuzzer.h"
+#include "passes/specialise.h"
+
+using namespace shaderx;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    fuzz::Program t(data, size);
+    Diagnostics diagnostics;
+    fuzz::expect(passes::specialise(t.module, t.entry, {}, diagnostics), diagnostics.text() + t.before);
+    passes::expandToLongWork(t.module, t.entry);
+    fuzz::expectNothing(t.problemAfter("expansion to long work"));
+    passes::expandCalledOnce(t.module, t.entry);
+    fuzz::expectNothing(t.problemAfter("expansion of what is called once"));
+    return 0;
+}
