@@ -77,7 +77,7 @@ Compiler::~Compiler() = default;
 
 NameTable& Compiler::names() { return state_->names; }
 
-std::unique_ptr<doc::Document> Compiler::newDocument() { 
+std::unique_ptr<doc::Document> Compiler::newDocument() {
     return std::make_unique<doc::Document>(state_->names, state_->known);
 }
 

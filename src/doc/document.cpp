@@ -48,12 +48,12 @@ WellKnown::WellKnown(NameTable& names)
       defaultgeomprop(names.intern("defaultgeomprop")),
       surfaceshader(names.intern("surfaceshader")) {
     constexpr std::string_view kFormat[] = {
-        "input",       "output",    "nodegraph",      "nodedef",     "parameter",     "token",
-        "look",        "lookgroup", "implementation", "collection",  "materialassign", "geominfo",
-        "geomprop",    "geompropdef", "typedef",      "unitdef",     "unittypedef",   "targetdef",
-        "attributedef", "propertyset", "property",    "propertyassign", "variantset", "variant",
-        "variantassign", "visibility", "backdrop",    "xi:include",  "materialx",     "member",
-        "unit",        "geomattr",  "opgraph",        "shader",      "material",      "shaderref",
+        "input",         "output",      "nodegraph",      "nodedef",        "parameter",      "token",
+        "look",          "lookgroup",   "implementation", "collection",     "materialassign", "geominfo",
+        "geomprop",      "geompropdef", "typedef",        "unitdef",        "unittypedef",    "targetdef",
+        "attributedef",  "propertyset", "property",       "propertyassign", "variantset",     "variant",
+        "variantassign", "visibility",  "backdrop",       "xi:include",     "materialx",      "member",
+        "unit",          "geomattr",    "opgraph",        "shader",         "material",       "shaderref",
     };
     static_assert(std::size(kFormat) == std::tuple_size_v<decltype(format)>);
     std::transform(std::begin(kFormat), std::end(kFormat), format.begin(),

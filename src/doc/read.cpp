@@ -32,9 +32,7 @@ class DocumentFiller {
         d_.ownAttributes_.push_back({name, value});
         pending_++;
     }
-    std::span<const Attribute> pending() const {
-        return std::span<const Attribute>(d_.ownAttributes_).last(pending_);
-    }
+    std::span<const Attribute> pending() const { return std::span<const Attribute>(d_.ownAttributes_).last(pending_); }
     ElementId add(Name category, ElementId parent, std::uint32_t source, std::size_t offset) {
         ElementId id = d_.addElement(category, parent);
         complete(id, source, offset);
