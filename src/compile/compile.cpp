@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compile/bodies.h"
+#include "compile/finished.h"
 #include "compile/reflection.h"
 #include "doc/check.h"
 #include "doc/upgrade.h"
@@ -150,6 +151,8 @@ struct Compilation {
     const doc::Definitions& definitions;
     NodeBodies& bodies;
     passes::Specialisations& made;
+    FinishedFunctions* finished;  // where something of it is kept, else none
+    text::FunctionTexts& texts;
     ir::Module module;
     graph::Graph graph{};
     passes::ShaderInterface interface{};
@@ -165,8 +168,7 @@ struct Compilation {
         interface.usesBlocks = options.blocks;
         interface.bindingBase = options.bindingBase;
         dump(StageName::Interface);
-        legalise();
-        place();
+        finish();
         print(shader);
         return true;
     }
@@ -303,24 +305,38 @@ struct Compilation {
         return true;
     }
 
-    void legalise() {
-        for (auto& f : module.functions) glsl::legalise(module, *f);
-        dump(StageName::Legalise);
+    void legalise(ir::Function& f) { glsl::legalise(module, f); }
+
+    void place(ir::Function& f) {
+        passes::PlaceOptions how;
+        how.isEntry = f.name == pixel;
+        how.names = &names;
+        passes::place(f, how);
     }
 
-    void place() {
-        for (auto& f : module.functions) {
-            passes::PlaceOptions how;
-            how.isEntry = f->name == pixel;
-            how.names = &names;
-            passes::place(*f, how);
+    // Legalises and places, one stage after the other where that is to be seen.
+    void finish() {
+        if (wants(StageName::Legalise) || wants(StageName::Place)) finished = nullptr;
+        if (!finished) {
+            for (auto& f : module.functions) legalise(*f);
+            dump(StageName::Legalise);
+            for (auto& f : module.functions) place(*f);
+        } else {
+            auto both = [&](ir::Function& f) {
+                legalise(f);
+                place(f);
+            };
+            const std::array entries{pixel, vertex};
+            finished->finish(module, entries, both);
+            texts.numbers = &finished->numbers();
+            for (Name entry : entries) both(*module.findOwn(entry));
         }
         dump(StageName::Place);
     }
 
     void print(Shader& shader) {
         std::string title = document.path(element);
-        glsl::Sources sources = glsl::print(module, interface, title);
+        glsl::Sources sources = glsl::print(module, interface, title, finished ? &texts : nullptr);
         shader.element = document.path(element);
         shader.vertex = std::move(sources.vertex);
         shader.pixel = std::move(sources.pixel);
@@ -346,12 +362,15 @@ struct Compiler::Batch {
     std::optional<doc::Definitions> definitions{};
     std::optional<NodeBodies> bodies{};
     passes::Specialisations made{};
+    FinishedFunctions finished{};
+    text::FunctionTexts texts{};
+    bool isSeveral = false;  // elements: it pays to keep what is finished
 };
 
 template <class Run>
 bool Compiler::compile(Batch& batch, const doc::Document& document, doc::ElementId element,
                        const GenerateOptions& options, Diagnostics& diagnostics, Run&& run) {
-    auto& [definitions, bodies, made] = batch;
+    auto& [definitions, bodies, made, finished, texts, isSeveral] = batch;
     return guarded(diagnostics, fmt::format("generating '{}'", document.path(element)), [&] {
         if (!definitions) definitions = state_->definitions(document);
         // Uniforms inside of bodies have taken names that another element may want.
@@ -361,9 +380,17 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
         }
         if (!bodies) bodies.emplace(state_->names, *definitions, state_->libraries()).addDocument(document);
         bodies->forgetNames();
-        Compilation c{document,    element,       options,
-                      diagnostics, state_->names, *definitions,
-                      *bodies,     made,          ir::Module(state_->names)};
+        Compilation c{document,
+                      element,
+                      options,
+                      diagnostics,
+                      state_->names,
+                      *definitions,
+                      *bodies,
+                      made,
+                      isSeveral ? &finished : nullptr,
+                      texts,
+                      ir::Module(state_->names)};
         Prefiltered prefiltered(state_->names, c.module);
         if (options.environment != EnvironmentLight::Samples) c.module.sources.push_back(&prefiltered);
         c.module.sources.push_back(&*bodies);
@@ -375,6 +402,7 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
 void Compiler::generate(const doc::Document& document, std::span<const doc::ElementId> elements,
                         const GenerateOptions& options, const Done& done) {
     Batch batch;
+    batch.isSeveral = elements.size() > 1;
     for (doc::ElementId element : elements) {
         Shader shader;
         Diagnostics diagnostics;

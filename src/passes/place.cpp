@@ -259,6 +259,12 @@ struct Placer {
     int nameLength(Name name, int otherwise) const {
         return options.names && name ? static_cast<int>(options.names->text(name).size()) : otherwise;
     }
+    // Of a function's name, without the number that clones have.
+    int stemLength(Name name) const {
+        if (!options.names) return 16;
+        std::string_view text = options.names->text(name);
+        return static_cast<int>(std::min(text.find('@'), text.size()));
+    }
     int freeLength(const Expr& e) const {
         switch (e.op) {
             case Op::Constant:
@@ -299,8 +305,8 @@ struct Placer {
             if (isStatement(i)) continue;  // its operands stand in lines of their own
             auto operands = f.operandsOf(f.exprs[i]);
             bool isCall = f.exprs[i].op == Op::Call;
-            int own = isCall ? kOperation + nameLength(Name(f.exprs[i].payload), 16) + 2 * f.exprs[i].operandCount
-                             : kOperation;
+            int own =
+                isCall ? kOperation + stemLength(Name(f.exprs[i].payload)) + 2 * f.exprs[i].operandCount : kOperation;
             for (;;) {
                 int sum = own;
                 ExprId longest;

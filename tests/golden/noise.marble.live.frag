@@ -52,12 +52,11 @@ float noise_layer(int i, int j, int k, float x, float y, float z, float u, float
     int first2 = i + 1 - 559038712;
     float x2 = x - 1.0;
     float x3 = gradient_3d(hash_mix(first2, second, third), x2, y, z);
-    float near = mix(gradient_3d(hash_mix(first, second, third), x, y, z), x3, u);
     int second2 = j + 1 - 559038712;
     float y2 = y - 1.0;
-    float x4 = gradient_3d(hash_mix(first, second2, third), x, y2, z);
-    float x5 = gradient_3d(hash_mix(first2, second2, third), x2, y2, z);
-    return mix(near, mix(x4, x5, u), v);
+    float x4 = gradient_3d(hash_mix(first2, second2, third), x2, y2, z);
+    float far = mix(gradient_3d(hash_mix(first, second2, third), x, y2, z), x4, u);
+    return mix(mix(gradient_3d(hash_mix(first, second, third), x, y, z), x3, u), far, v);
 }
 
 float noise_3d(vec3 p)

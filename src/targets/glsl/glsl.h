@@ -9,6 +9,7 @@
 #include "base/diagnostics.h"
 #include "ir/module.h"
 #include "passes/stages.h"
+#include "targets/text/function_texts.h"
 
 namespace shaderx::glsl {
 
@@ -26,7 +27,9 @@ struct Sources {
 };
 
 // Prints a legalised and placed module. What it cannot print is an internal error: that is the work of legalise.
-// `title` becomes the first comment of the pixel stage.
-Sources print(const ir::Module& module, const passes::ShaderInterface& interface, std::string_view title);
+// `title` becomes the first comment of the pixel stage. `texts` has what was printed of other programs; it changes no
+// byte.
+Sources print(const ir::Module& module, const passes::ShaderInterface& interface, std::string_view title,
+              text::FunctionTexts* texts = nullptr);
 
 }  // namespace shaderx::glsl

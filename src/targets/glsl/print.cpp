@@ -391,8 +391,35 @@ void vertexStage(const Module& module, const passes::ShaderInterface& interface,
     sources.names.insert(stage.inputs.begin(), stage.inputs.end());
 }
 
+// All that decides the text of a function whose content has this number: how what it refers to is spelled.
+std::string keyOf(const Stage& stage, const Function& f, std::uint32_t number) {
+    std::string key(reinterpret_cast<const char*>(&number), sizeof(number));
+    key += stage.globals.at(f.name);
+    for (const Expr& e : f.exprs) {
+        if (e.op == Op::Call || e.op == Op::Uniform) key.append("\n").append(stage.globals.at(Name(e.payload)));
+        if (e.op == Op::Attribute) key.append("\n").append(stage.members.at(Name(e.payload)));
+    }
+    return key;
+}
+
+void printFunction(Stage& stage, const Function& f, text::FunctionTexts* texts) {
+    if (!texts) return FunctionPrinter(stage, f, false).print();
+    const std::string key = keyOf(stage, f, texts->numbers->at(f.name));
+    if (auto found = texts->known.find(key); found != texts->known.end()) {
+        const std::vector<std::string>& locals = found->second.locals;
+        if (std::none_of(locals.begin(), locals.end(), [&](const auto& l) { return stage.namer.isGlobal(l); }))
+            return stage.out.raw(found->second.text);
+    }
+    const std::size_t start = stage.out.size();
+    FunctionPrinter(stage, f, false).print();
+    if (stage.namer.gaveWay()) return;
+    text::FunctionTexts::Text& kept = texts->known[key];
+    kept.text = stage.out.since(start);
+    for (std::size_t k = 0; k < stage.namer.locals().size(); k++) kept.locals.emplace_back(stage.namer.locals()[k]);
+}
+
 void pixelStage(const Module& module, const passes::ShaderInterface& interface, std::string_view title,
-                Sources& sources) {
+                text::FunctionTexts* texts, Sources& sources) {
     Stage stage{module, interface, true, text::Namer(reservedWords())};
     version(stage);
     stage.out.line();
@@ -415,7 +442,7 @@ void pixelStage(const Module& module, const passes::ShaderInterface& interface, 
     }
     for (const auto& f : module.functions) {
         if (f->name == interface.pixel || f->name == interface.vertex) continue;
-        FunctionPrinter(stage, *f, false).print();
+        printFunction(stage, *f, texts);
         stage.out.line();
     }
     FunctionPrinter(stage, entry, true).print();
@@ -427,10 +454,11 @@ void pixelStage(const Module& module, const passes::ShaderInterface& interface, 
 
 }  // namespace
 
-Sources print(const Module& module, const passes::ShaderInterface& interface, std::string_view title) {
+Sources print(const Module& module, const passes::ShaderInterface& interface, std::string_view title,
+              text::FunctionTexts* texts) {
     Sources sources;
     vertexStage(module, interface, sources);
-    pixelStage(module, interface, title, sources);
+    pixelStage(module, interface, title, texts, sources);
     return sources;
 }
 

@@ -58,9 +58,10 @@ std::string identifier(std::string_view text) {
     return out.empty() || out == "_" ? "v" : out;
 }
 
-bool Namer::taken(std::string_view name, std::uint32_t hash) const {
-    return reserved_.contains(name, hash) || name.starts_with("gl_") || global_.contains(name, hash) ||
-           local_.contains(name, hash);
+bool Namer::taken(std::string_view name, std::uint32_t hash) {
+    const bool isGlobal = global_.contains(name, hash);
+    gaveWay_ = gaveWay_ || isGlobal;
+    return isGlobal || reserved_.contains(name, hash) || name.starts_with("gl_") || local_.contains(name, hash);
 }
 
 std::string Namer::fresh(std::string_view wanted, NameSet& set) {

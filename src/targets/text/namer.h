@@ -47,6 +47,8 @@ class NameSet {
     }
     void insert(std::string_view name, std::uint32_t hash);
     void clear();
+    std::size_t size() const { return at_.size(); }
+    std::string_view operator[](std::size_t k) const { return text(k); }
 
   private:
     std::size_t slotOf(std::string_view name, std::uint32_t hash) const;
@@ -67,16 +69,22 @@ class Namer {
     void enterFunction() {
         local_.clear();
         next_.clear();
+        gaveWay_ = false;
     }
+    const NameSet& locals() const { return local_; }
+    bool isGlobal(std::string_view name) const { return global_.contains(name, hashText(name)); }
+    // Whether a local name of this function is another than was wanted because of a global one.
+    bool gaveWay() const { return gaveWay_; }
     // Free within the function and different from every global name.
     std::string local(std::string_view wanted);
 
   private:
-    bool taken(std::string_view name, std::uint32_t hash) const;
+    bool taken(std::string_view name, std::uint32_t hash);
     std::string fresh(std::string_view wanted, NameSet& set);
 
     ReservedWords reserved_;
     NameSet global_, local_;
+    bool gaveWay_ = false;
     std::unordered_map<std::string, int> next_;  // number to try next, by name
 };
 

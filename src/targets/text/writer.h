@@ -24,6 +24,9 @@ class Writer {
     // A line bit by bit: what is appended to the text that begin() returns, up to end(), is its content.
     std::string& begin() { return out_.append(static_cast<std::size_t>(depth_) * 4, ' '); }
     void end(std::string_view text = {}) { out_.append(text) += '\n'; }
+    // Lines as they are.
+    void raw(std::string_view lines) { out_.append(lines); }
+    std::string_view since(std::size_t start) const { return std::string_view(out_).substr(start); }
     void open(std::string_view text) {
         line(text);
         line("{");
