@@ -78,6 +78,7 @@ struct NodeDef {
 
 struct GivenInput {
     Name name, type;
+    friend bool operator==(const GivenInput&, const GivenInput&) = default;
 };
 
 // What is asked for: a node as written.

@@ -58,6 +58,7 @@ WellKnown::WellKnown(NameTable& names)
     static_assert(std::size(kFormat) == std::tuple_size_v<decltype(format)>);
     std::transform(std::begin(kFormat), std::end(kFormat), format.begin(),
                    [&](std::string_view word) { return names.intern(word); });
+    for (Name word : format) formatBits |= std::uint64_t(1) << (word.index & 63);
 }
 
 Document::Document(NameTable& names, const WellKnown& known) : names_(names), known_(known) {

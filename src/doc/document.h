@@ -46,7 +46,10 @@ struct WellKnown {
     explicit WellKnown(NameTable& names);
 
     // Categories that the format itself uses, which no node can have.
-    bool isFormat(Name category) const { return std::count(format.begin(), format.end(), category) != 0; }
+    bool isFormat(Name category) const {
+        return (formatBits >> (category.index & 63) & 1) != 0 &&
+               std::find(format.begin(), format.end(), category) != format.end();
+    }
 
     Name name, type, value, nodename, nodegraph, output, interfacename, nodedef, node, input, parameter, token;
     Name implementation, version, isdefaultversion, target, inherit, colorspace, fileprefix, namespaceName, file;
@@ -55,6 +58,7 @@ struct WellKnown {
 
   private:
     std::array<Name, 36> format;
+    std::uint64_t formatBits = 0;  // which handles modulo 64 occur in it: most others are told apart by these alone
 };
 
 // Owns its elements while it is edited, or views a library's arrays read only. Lookups fill an index on the way, so a

@@ -1,5 +1,7 @@
 #include "doc/values.h"
 
+#include <bit>
+
 #include <fmt/format.h>
 
 #include "base/numbers.h"
@@ -83,27 +85,33 @@ std::string numberProblem(std::string_view item, bool integer) {
     return fmt::format("{} is not an integer", quoted(item));
 }
 
-bool readFixed(Value& value, std::uint32_t count, std::string_view text, std::string& problem) {
+// What is wrong with a text that should be so many numbers; empty where nothing is.
+std::string fixedProblem(bool integer, std::uint32_t count, std::string_view text) {
     ListReader list{text, 0, false, {}};
-    bool integer = value.type == ValueType::Integer;
-    for (std::string_view item = list.next(); !item.empty(); item = list.next()) {
-        if (integer) {
-            std::optional<int> n = parseInt(item);
-            if (!n) problem = numberProblem(item, true);
-            value.integer = n.value_or(0);
-            value.numbers[0] = static_cast<float>(value.integer);
-        } else {
-            std::optional<float> n = parseFloat(item);
-            if (!n) problem = numberProblem(item, false);
-            if (list.taken <= count) value.numbers[list.taken - 1] = n.value_or(0);
-        }
-        if (!problem.empty()) return false;
+    for (std::string_view item = list.next(); !item.empty(); item = list.next())
+        if (integer ? !parseInt(item) : !parseFloat(item)) return numberProblem(item, integer);
+    if (!list.problem.empty() || list.taken == count) return list.problem;
+    return fmt::format("expected {} number{}, found {}", count, count == 1 ? "" : "s",
+                       list.taken ? fmt::format("{}", list.taken) : "none");
+}
+
+bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+// The same grammar as ListReader's, for the usual case that all is well.
+bool readFloats(std::string_view text, std::uint32_t count, std::uint32_t* words) {
+    const char *at = text.data(), *end = at + text.size();
+    bool afterComma = false;
+    for (std::uint32_t taken = 0;; taken++) {
+        while (at != end && isBlank(*at)) at++;
+        if (at == end) return taken == count && !afterComma;
+        float value = 0;
+        if (taken == count || !(at = readFloat(at, end, value))) return false;
+        words[taken] = std::bit_cast<std::uint32_t>(value);
+        if (at != end && !isBlank(*at) && *at != ',') return false;
+        while (at != end && isBlank(*at)) at++;
+        afterComma = at != end && *at == ',';
+        if (afterComma) at++;
     }
-    problem = list.problem;
-    if (problem.empty() && list.taken != count)
-        problem = fmt::format("expected {} number{}, found {}", count, count == 1 ? "" : "s",
-                              list.taken ? fmt::format("{}", list.taken) : "none");
-    return problem.empty();
 }
 
 bool readArray(Value& value, std::uint32_t itemNumbers, std::string_view text, std::string& problem) {
@@ -146,6 +154,20 @@ std::optional<ValueType> valueType(std::string_view typeName) {
 
 std::uint32_t numberCount(ValueType type) { return kTypes[static_cast<std::size_t>(type)].numbers; }
 
+bool parseWords(ValueType type, std::string_view text, std::uint32_t* words) {
+    if (type > ValueType::Matrix44) return false;
+    if (type > ValueType::Integer) return readFloats(text, numberCount(type), words);
+    text = trim(text);
+    if (type == ValueType::Boolean) {
+        words[0] = text == "true";
+        return text == "true" || text == "false";
+    }
+    ListReader list{text, 0, false, {}};
+    std::optional<int> n = parseInt(list.next());
+    words[0] = static_cast<std::uint32_t>(n.value_or(0));
+    return n && list.next().empty() && list.problem.empty();
+}
+
 std::optional<Value> parseValue(ValueType type, std::string_view text, std::string* problem) {
     Value value;
     value.type = type;
@@ -166,9 +188,18 @@ std::optional<Value> parseValue(ValueType type, std::string_view text, std::stri
         case ValueType::Vector3:
         case ValueType::Vector4:
         case ValueType::Matrix33:
-        case ValueType::Matrix44:
-            readFixed(value, numberCount(type), text, wrong);
+        case ValueType::Matrix44: {
+            std::uint32_t words[16];
+            wrong = fixedProblem(type == ValueType::Integer, numberCount(type), text);
+            if (!wrong.empty() || !parseWords(type, text, words)) break;
+            if (type == ValueType::Integer) {
+                value.integer = static_cast<int>(words[0]);
+                value.numbers[0] = static_cast<float>(value.integer);
+            } else {
+                for (std::uint32_t i = 0; i < numberCount(type); i++) value.numbers[i] = std::bit_cast<float>(words[i]);
+            }
             break;
+        }
         case ValueType::String:
         case ValueType::Filename:
         case ValueType::Geomname:

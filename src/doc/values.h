@@ -49,6 +49,10 @@ struct Value {
     std::vector<std::string> strings;  // StringArray, split at commas, blanks around the items removed
 };
 
+// Reads a value of Boolean … Matrix44 as bits: `numberCount` floats, or the integer, Boolean as 0 or 1. False where the
+// text is wrong or the type has no numbers; parseValue tells what is wrong.
+bool parseWords(ValueType type, std::string_view text, std::uint32_t* words);
+
 // Parses a value. Numbers are separated by commas or blanks, as many as the type has. Where the text is wrong, returns
 // none and, if `problem` is given, says there what is wrong: "expected 3 numbers, found 2".
 std::optional<Value> parseValue(ValueType type, std::string_view text, std::string* problem = nullptr);

@@ -1,5 +1,7 @@
 #include "doc/values.h"
 
+#include <bit>
+
 #include <gtest/gtest.h>
 
 namespace shaderx::doc {
@@ -29,6 +31,25 @@ TEST(Values, ParsesEachKind) {
     EXPECT_EQ(valueType("vector4array"), ValueType::Vector4Array);
     EXPECT_FALSE(valueType("BSDF"));
     EXPECT_EQ(numberCount(ValueType::Matrix44), 16u);
+}
+
+// The quick reader of numbers and the one that explains must take the same texts.
+TEST(Values, WordsAreThoseOfTheValue) {
+    const std::string_view parts[] = {"", " ", "1", "-2.5", "+3", "1e2", ",", ", ", "x", "nan", "1.", ".5", "1e", "true"};
+    std::uint32_t words[16];
+    for (std::string_view a : parts)
+        for (std::string_view b : parts)
+            for (std::string_view c : parts)
+                for (ValueType type : {ValueType::Boolean, ValueType::Integer, ValueType::Float, ValueType::Vector2}) {
+                    std::string text = std::string(a) + std::string(b) + std::string(c);
+                    std::optional<Value> value = parseValue(type, text);
+                    ASSERT_EQ(parseWords(type, text, words), value.has_value()) << text;
+                    if (!value) continue;
+                    bool whole = type == ValueType::Boolean || type == ValueType::Integer;
+                    EXPECT_EQ(words[0], whole ? static_cast<std::uint32_t>(value->integer)
+                                              : std::bit_cast<std::uint32_t>(value->numbers[0]));
+                }
+    EXPECT_FALSE(parseWords(ValueType::String, "1", words));
 }
 
 TEST(Values, SaysWhatIsWrong) {

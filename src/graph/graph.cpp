@@ -1,5 +1,7 @@
 #include "graph/graph.h"
 
+#include <algorithm>
+#include <array>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -18,8 +20,63 @@ using doc::ElementId;
 // until it is.
 struct Frame {
     Node node;
-    std::vector<Input> inputs;
-    std::size_t next = 0;
+    std::uint32_t next = 0;  // input
+    Name output;             // of this node, which the frame below waits for
+};
+
+// How far each element is: not met, on the way, or built as which node.
+class Progress {
+  public:
+    static constexpr std::uint32_t kNew = 0xffffffffu, kOpen = 0xfffffffeu;
+
+    // Valid until the next call.
+    std::uint32_t& operator[](ElementId element) {
+        if (used_ * 2 >= slots_.size()) grow();
+        Slot& slot = slots_[slotOf(element)];
+        if (!slot.element) {
+            slot.element = element;
+            used_++;
+        }
+        return slot.state;
+    }
+
+  private:
+    struct Slot {
+        ElementId element;
+        std::uint32_t state = kNew;
+    };
+    std::size_t slotOf(ElementId element) const {
+        std::size_t mask = slots_.size() - 1, i = element.index * 0x9e3779b1u >> 4 & mask;  // the golden ratio spreads
+        while (slots_[i].element && slots_[i].element != element) i = (i + 1) & mask;
+        return i;
+    }
+    void grow() {
+        std::vector<Slot> old(std::max<std::size_t>(64, slots_.size() * 2));
+        old.swap(slots_);
+        for (const Slot& s : old)
+            if (s.element) slots_[slotOf(s.element)] = s;
+    }
+
+    std::vector<Slot> slots_;  // open addressing, a power of two long
+    std::size_t used_ = 0;
+};
+
+// How a node is written, as far as its definition depends on it, and what that means. A document writes many nodes
+// alike, so the last shape of a category and type is tried before the definitions are searched.
+struct Shape {
+    doc::Query query;  // without its inputs
+    std::vector<doc::GivenInput> given;
+    doc::Match match;
+    std::uint32_t kind = 0;
+    // By input of the kind.
+    std::vector<std::uint32_t> from;  // which of `given` it is, or kAbsent
+    std::vector<ir::Type> types;
+
+    static constexpr std::uint32_t kAbsent = 0xffffffffu;
+    bool isOf(const doc::Query& q, const std::vector<doc::GivenInput>& inputs) const {
+        return query.category == q.category && query.type == q.type && query.version == q.version &&
+               query.nodedef == q.nodedef && query.space == q.space && given == inputs;
+    }
 };
 
 struct GraphBuilder {
@@ -28,9 +85,14 @@ struct GraphBuilder {
     Graph& graph;
     Diagnostics& diagnostics;
     ElementId functional{};  // the nodegraph whose interface stays open, if any
-    std::unordered_map<ElementId, NodeId> built{};
-    std::unordered_map<ElementId, bool> open{};
+    Progress progress{};
     std::vector<Frame> stack{};
+    std::unordered_map<std::uint64_t, std::uint32_t> kinds{};  // by layer and row of the nodedef
+    std::vector<Shape> shapes{};
+    std::array<std::uint32_t, 64> shapeAt{};  // by category and type: shape + 1
+    std::vector<doc::GivenInput> given{};     // of the node at hand, and their elements
+    std::vector<ElementId> givenElements{};
+    bool hasOthers = false;  // has it children by name that are no inputs?
     bool ok = true;
 
     bool run(ElementId element) {
@@ -58,8 +120,7 @@ struct GraphBuilder {
     void addNode(ElementId element) {
         Source source;
         if (!node(element, source)) return;
-        doc::NodeDef def = graph.nodes[source.node.index].def;
-        for (const doc::Port& port : definitions.outputs(def)) {
+        for (const doc::Port& port : graph.kindOf(graph.nodes[source.node.index]).outputs) {
             graph.outputs.push_back({port.name, ir::typeNamed(d.text(port.type)), source, element});
             source.output++;
         }
@@ -124,7 +185,7 @@ struct GraphBuilder {
 
     bool pickOutput(ElementId port, Name output, Source& source) {
         if (!output) return true;
-        auto outputs = definitions.outputs(graph.nodes[source.node.index].def);
+        auto outputs = graph.kindOf(graph.nodes[source.node.index]).outputs;
         for (std::size_t i = 0; i < outputs.size(); i++)
             if (outputs[i].name == output) {
                 source.output = static_cast<std::uint32_t>(i);
@@ -137,70 +198,143 @@ struct GraphBuilder {
 
     // The node of an element, built with all that is upstream if it was not yet.
     bool node(ElementId element, Source& source) {
-        if (auto it = built.find(element); it != built.end()) {
-            source = {Source::Kind::Node, it->second, 0, {}, {}};
-            return true;
+        if (progress[element] == Progress::kNew) {
+            if (!push(element, {})) return false;
+            while (!stack.empty()) step();
         }
-        std::size_t base = stack.size();
-        if (!push(element)) return false;
-        while (stack.size() > base) step();
-        auto it = built.find(element);
-        if (it == built.end()) return false;
-        source = {Source::Kind::Node, it->second, 0, {}, {}};
+        source = {Source::Kind::Node, NodeId(progress[element]), 0, {}, {}};
         return true;
     }
 
-    bool push(ElementId element) {
-        Frame frame;
-        frame.node.element = element;
+    bool push(ElementId element, Name output) {
         graph.visited.push_back(element);
-        doc::Match match = definitions.match(d, element);
-        if (!match) {
+        const Shape& shape = shapeOf(element);
+        if (!shape.match) {
             error(element, "unknown-node",
                   fmt::format("no definition of '{}' fits this node", d.text(d[element].category)));
             return false;
         }
-        frame.node.def = match.def;
-        graph.isExact = graph.isExact && match.exact;
-        for (const doc::Port& port : definitions.inputs(match.def))
-            frame.inputs.push_back({&port, ir::typeNamed(d.text(port.type)), {}});
-        open[element] = true;
-        stack.push_back(std::move(frame));
+        graph.isExact = graph.isExact && shape.match.exact;
+        Frame& frame = stack.emplace_back();
+        frame.node = {element, shape.kind, static_cast<std::uint32_t>(graph.inputs.size())};
+        frame.output = output;
+        // Each input starts out with the port that the document has for it.
+        auto ports = graph.kinds[shape.kind].inputs;
+        for (std::size_t i = 0; i < ports.size(); i++) {
+            Input& input = graph.inputs.emplace_back();
+            input.port = &ports[i];
+            input.type = shape.types[i];
+            if (shape.from[i] != Shape::kAbsent)
+                input.source.element = givenElements[shape.from[i]];
+            else if (hasOthers)
+                input.source.element = d.child(element, ports[i].name);
+        }
+        progress[element] = Progress::kOpen;
         return true;
+    }
+
+    const Shape& shapeOf(ElementId element) {
+        const doc::WellKnown& k = d.known();
+        doc::Query q;
+        q.category = d[element].category;
+        for (const doc::Attribute& a : d.attributes(element)) {
+            if (a.name == k.type) q.type = a.value;
+            if (a.name == k.version) q.version = a.value;
+            if (a.name == k.nodedef) q.nodedef = a.value;
+        }
+        q.space = d.namespaceOf(element);
+        given.clear();
+        givenElements.clear();
+        hasOthers = false;
+        for (ElementId c : doc::children(d, element)) {
+            if (d[c].category != k.input || !d[c].name) {
+                hasOthers = hasOthers || d[c].name;
+                continue;
+            }
+            given.push_back({d[c].name, d.attribute(c, k.type)});
+            givenElements.push_back(c);
+        }
+        std::uint32_t& at = shapeAt[(q.category.index + 7 * q.type.index) % shapeAt.size()];
+        if (at && shapes[at - 1].isOf(q, given)) return shapes[at - 1];
+        if (!at) {
+            shapes.emplace_back();
+            at = static_cast<std::uint32_t>(shapes.size());
+        }
+        fill(shapes[at - 1], q);
+        return shapes[at - 1];
+    }
+
+    void fill(Shape& shape, const doc::Query& q) {
+        shape.query = q;
+        shape.given = given;
+        doc::Query whole = q;
+        whole.inputs = given;
+        shape.match = definitions.match(whole);
+        shape.from.clear();
+        shape.types.clear();
+        if (!shape.match) return;
+        shape.kind = kindOf(shape.match.def);
+        for (const doc::Port& port : graph.kinds[shape.kind].inputs) {
+            shape.types.push_back(ir::typeNamed(d.text(port.type)));
+            auto same = [&](const doc::GivenInput& g) { return g.name == port.name; };
+            auto found = std::find_if(given.begin(), given.end(), same);
+            shape.from.push_back(found == given.end() ? Shape::kAbsent
+                                                      : static_cast<std::uint32_t>(found - given.begin()));
+        }
+    }
+
+    std::uint32_t kindOf(doc::NodeDef def) {
+        auto [it, isNew] = kinds.try_emplace(std::uint64_t(def.layer) << 32 | def.row,
+                                             static_cast<std::uint32_t>(graph.kinds.size()));
+        if (isNew) graph.kinds.push_back({def, definitions.inputs(def), definitions.outputs(def)});
+        return it->second;
     }
 
     // One input of the topmost node, or the node itself when all are there.
     void step() {
         Frame& frame = stack.back();
-        if (frame.next == frame.inputs.size()) {
-            frame.node.firstInput = static_cast<std::uint32_t>(graph.inputs.size());
-            frame.node.inputCount = static_cast<std::uint32_t>(frame.inputs.size());
-            graph.inputs.insert(graph.inputs.end(), frame.inputs.begin(), frame.inputs.end());
-            built[frame.node.element] = NodeId(static_cast<std::uint32_t>(graph.nodes.size()));
-            open.erase(frame.node.element);
-            graph.nodes.push_back(frame.node);
-            stack.pop_back();
-            return;
-        }
-        Input& input = frame.inputs[frame.next];
-        ElementId port = d.child(frame.node.element, d.known().input, input.port->name);
-        if (!port) port = d.child(frame.node.element, input.port->name);
+        if (frame.next == graph.kinds[frame.node.kind].inputs.size()) return finish();
+        Input& input = graph.inputs[frame.node.firstInput + frame.next];
+        ElementId port = input.source.element;
+        input.source = {};
         Name output;
         ElementId target = port ? follow(port, input.source, output) : ElementId();
         if (!target) {
             frame.next++;
             return;
         }
-        if (auto it = built.find(target); it != built.end()) {
-            input.source = {Source::Kind::Node, it->second, 0, {}, {}};
-            pickOutput(port, output, input.source);
-            frame.next++;
-        } else if (open.count(target)) {
+        std::uint32_t state = progress[target];
+        if (state == Progress::kNew) {
+            input.source.element = port;  // for when it is built
+            if (!push(target, output)) next({});
+        } else if (state == Progress::kOpen) {
             cycle(target);
             frame.next++;
-        } else if (!push(target)) {
-            stack.back().next++;
+        } else {
+            connect(NodeId(state), output, port);
         }
+    }
+
+    void finish() {
+        Frame done = stack.back();
+        NodeId made(static_cast<std::uint32_t>(graph.nodes.size()));
+        progress[done.node.element] = made.index;
+        graph.nodes.push_back(done.node);
+        stack.pop_back();
+        if (stack.empty()) return;
+        const Frame& reader = stack.back();
+        connect(made, done.output, graph.inputs[reader.node.firstInput + reader.next].source.element);
+    }
+
+    // The topmost node's next input comes from a node.
+    void connect(NodeId from, Name output, ElementId port) {
+        Source source{Source::Kind::Node, from, 0, {}, {}};
+        pickOutput(port, output, source);
+        next(source);
+    }
+    void next(const Source& source) {
+        Frame& frame = stack.back();
+        graph.inputs[frame.node.firstInput + frame.next++].source = source;
     }
 
     void cycle(ElementId start) {
@@ -235,7 +369,7 @@ std::string print(const Graph& graph, const doc::Definitions& definitions) {
                 return fmt::format("interface {}", d.text(s.input));
             case Source::Kind::Node: {
                 const Node& n = graph.nodes[s.node.index];
-                auto outputs = definitions.outputs(n.def);
+                auto outputs = graph.kindOf(n).outputs;
                 std::string name = d.path(n.element);
                 return outputs.size() > 1 ? fmt::format("{}.{}", name, d.text(outputs[s.output].name)) : name;
             }
@@ -244,7 +378,7 @@ std::string print(const Graph& graph, const doc::Definitions& definitions) {
     };
     for (const Node& n : graph.nodes) {
         out += fmt::format("{} = {} ({})\n", d.path(n.element), d.text(d[n.element].category),
-                           d.text(definitions.row(n.def).name));
+                           d.text(definitions.row(graph.kindOf(n).def).name));
         for (const Input& i : graph.inputsOf(n))
             out += fmt::format("    {}: {} = {}\n", d.text(i.port->name), info(i.type).name, source(i.source));
     }

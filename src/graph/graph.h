@@ -1,6 +1,7 @@
 // The typed graph below an element: only what is upstream of it, in topological order.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,16 @@ struct Input {
     Source source;
 };
 
+// What all nodes of one definition have in common.
+struct NodeKind {
+    doc::NodeDef def;
+    std::span<const doc::Port> inputs, outputs;  // of the nodedef
+};
+
 struct Node {
     doc::ElementId element;
-    doc::NodeDef def;
-    std::uint32_t firstInput = 0, inputCount = 0;  // in the order of the nodedef
+    std::uint32_t kind = 0;        // of Graph::kinds
+    std::uint32_t firstInput = 0;  // in the order of the nodedef
 };
 
 struct Output {
@@ -51,12 +58,16 @@ struct Output {
 // Nodes come after all nodes that they depend on.
 struct Graph {
     const doc::Document* document;
+    std::vector<NodeKind> kinds;
     std::vector<Node> nodes;
     std::vector<Input> inputs;
     std::vector<Output> outputs;
     std::vector<doc::ElementId> visited;  // all nodes upstream, those that could not be built too
     bool isExact = true;                  // no node gives an input that its nodedef does not have, or of another type
-    std::span<const Input> inputsOf(const Node& n) const { return {inputs.data() + n.firstInput, n.inputCount}; }
+    const NodeKind& kindOf(const Node& n) const { return kinds[n.kind]; }
+    std::span<const Input> inputsOf(const Node& n) const {
+        return {inputs.data() + n.firstInput, kindOf(n).inputs.size()};
+    }
 };
 
 // Builds the graph below an element: a node (all its outputs, or the one that is named), an <output>, or a nodegraph

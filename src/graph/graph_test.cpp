@@ -329,12 +329,19 @@ TEST(Values, MatricesAreTransposed) {
     for (std::size_t i = 0; i < 9; i++)
         EXPECT_EQ(std::bit_cast<float>(f.constantWords(m)[i]), static_cast<float>(i + 1));
     std::string problem;
-    EXPECT_FALSE(constantOf(b, ir::Type::Color3, "1, 2", &problem));
+    Words words;
+    EXPECT_FALSE(constantOf(b, ir::Type::Color3, "1, 2"));
+    EXPECT_FALSE(readWords(ir::Type::Color3, "1, 2", words, &problem));
     EXPECT_EQ(problem, "expected 3 numbers, found 2");
     EXPECT_TRUE(constantOf(b, ir::Type::BSDF, ""));
-    EXPECT_EQ(wordsOf(ir::Type::Boolean, "true"), (std::vector<std::uint32_t>{1}));
-    EXPECT_EQ(wordsOf(ir::Type::Integer, "-3"), (std::vector<std::uint32_t>{0xfffffffdu}));
-    EXPECT_TRUE(wordsOf(ir::Type::Float, "wide").empty());
+    EXPECT_TRUE(readWords(ir::Type::Boolean, "true", words));
+    EXPECT_EQ(words.bits[0], 1u);
+    EXPECT_TRUE(readWords(ir::Type::Integer, "-3", words));
+    EXPECT_EQ(words.bits[0], 0xfffffffdu);
+    EXPECT_TRUE(readWords(ir::Type::Vector2, "", words));
+    EXPECT_EQ(words.all().size(), 2u);
+    EXPECT_EQ(words.bits[0], 0u);
+    EXPECT_FALSE(readWords(ir::Type::Float, "wide", words));
 }
 
 // Nanoseconds a node for a chain of so many nodes, written last node first.

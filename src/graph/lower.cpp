@@ -14,6 +14,18 @@ using namespace ir;
 
 namespace {
 
+// What lowering knows of a kind of node once it has met one.
+struct Kind {
+    struct KindInput {
+        Name property;  // the geometric property that it stands for, if any
+        ExprId usual;   // the constant that is its default, once asked for
+    };
+    std::vector<KindInput> inputs;
+    std::vector<Type> outputs;
+    bool isMet = false, isAsked = false;
+    Name function;  // once asked for; none where nothing implements it
+};
+
 struct Lowerer {
     const Graph& graph;
     const doc::Definitions& definitions;
@@ -25,12 +37,16 @@ struct Lowerer {
     const doc::Document& d = *graph.document;
     Function fresh{};
     Builder b{module, fresh};
-    std::vector<std::vector<ExprId>> results = std::vector<std::vector<ExprId>>(graph.nodes.size());
+    std::vector<ExprId> results{};             // of all nodes in turn, each with its outputs in order
+    std::vector<std::uint32_t> firstResult{};  // by node
+    std::vector<Kind> kinds = std::vector<Kind>(graph.kinds.size());
+    std::vector<ExprId> operands{};            // of the node at hand
     std::unordered_map<Name, ExprId> geometric{};
     std::unordered_map<doc::ElementId, Name> uniformOf{};
     Name colorspace = d.names().intern("colorspace"), fileprefix = d.names().intern("fileprefix");
     Name uniformWord = d.names().intern("uniform"), unit = d.names().intern("unit");
     std::unordered_set<Name> failed{};  // nodedefs without a function
+    std::string wanted{};           // room to make a uniform's name in
     bool ok = true;
 
     bool run(Name name) {
@@ -40,7 +56,9 @@ struct Lowerer {
             for (const doc::Port& p : definitions.inputs(implemented))
                 fresh.params.push_back({p.name, typeNamed(d.text(p.type))});
         }
-        for (std::uint32_t i = 0; i < graph.nodes.size(); i++) node(i);
+        results.reserve(graph.nodes.size());
+        firstResult.reserve(graph.nodes.size());
+        for (const Node& n : graph.nodes) node(n);
         if (!ok) return false;
         for (const Output& o : graph.outputs) {
             ExprId value = fitted(valueOf(o.source, o.type, nullptr, nullptr), o.source, o.type, o.element);
@@ -61,11 +79,11 @@ struct Lowerer {
         return e;
     }
 
-    void node(std::uint32_t i) {
-        const Node& n = graph.nodes[i];
+    void node(const Node& n) {
         if (options.traces) fresh.beginOrigin(d.names().intern(d.path(n.element)));
-        auto outputs = definitions.outputs(n.def);
-        std::vector<ExprId> arguments;
+        firstResult.push_back(static_cast<std::uint32_t>(results.size()));
+        operands.clear();
+        meet(n);
         Name fileSpace, fileUnit;
         const Input* file = nullptr;
         for (const Input& input : graph.inputsOf(n)) {
@@ -79,53 +97,62 @@ struct Lowerer {
                 fileSpace = d.inherited(input.source.element, colorspace);
                 fileUnit = d.attribute(input.source.element, unit);
             }
-            arguments.push_back(value);
+            operands.push_back(value);
         }
-        std::size_t errors = diagnostics.errorCount();
-        Name defName = definitions.row(n.def).name;
-        Name function = failed.count(defName) ? Name() : bodies.functionOf(n.def, diagnostics);
-        if (!function) {
-            bool isFirst = failed.insert(defName).second;  // what is wrong with a definition is said once
-            if (isFirst && diagnostics.errorCount() == errors)
-                error(n.element, "no-implementation",
-                      fmt::format("nothing implements '{}' ({})", d.text(d[n.element].category),
-                                  d.text(definitions.row(n.def).name)));
+        const Kind& kind = known(n);
+        if (!kind.function) {
             ok = false;
-        }
-        std::vector<ExprId>& made = results[i];
-        if (!function) {
-            for (const doc::Port& o : outputs) made.push_back(b.null(typeNamed(d.text(o.type))));
+            for (Type type : kind.outputs) results.push_back(b.null(type));
             return;
         }
-        call(function, arguments, outputs, made);
-        for (std::size_t k = 0; k < made.size(); k++) {
-            Type type = b.type(made[k]);
+        bool isSingle = kind.outputs.size() == 1;
+        ExprId made = b.call(kind.function, isSingle ? kind.outputs[0] : Type::Tuple, operands);
+        Name nodeName = d[n.element].name;
+        for (std::uint32_t k = 0; k < kind.outputs.size(); k++) {
+            Type type = kind.outputs[k];
+            ExprId value = isSingle ? made : b.result(made, k, type);
             if (fileSpace && (type == Type::Color3 || type == Type::Color4))
-                made[k] = transformed(made[k], fileSpace, n.element);
-            if (fileUnit) made[k] = inUnits(made[k], fileUnit, file->source.element, file, &n);
-            std::string_view nodeName = d.text(d[n.element].name);
-            b.hint(made[k], made.size() == 1
-                                ? d[n.element].name
-                                : d.names().intern(fmt::format("{}_{}", nodeName, d.text(outputs[k].name))));
+                value = transformed(value, fileSpace, n.element);
+            if (fileUnit) value = inUnits(value, fileUnit, file->source.element, file, &n);
+            Name output = graph.kindOf(n).outputs[k].name;
+            b.hint(value, isSingle ? nodeName
+                                   : d.names().intern(fmt::format("{}_{}", d.text(nodeName), d.text(output))));
+            results.push_back(value);
         }
     }
 
-    void call(Name function, std::span<const ExprId> arguments, std::span<const doc::Port> outputs,
-              std::vector<ExprId>& made) {
-        if (outputs.size() == 1) {
-            made.push_back(b.call(function, typeNamed(d.text(outputs[0].type)), arguments));
-            return;
-        }
-        ExprId tuple = b.call(function, Type::Tuple, arguments);
-        for (std::uint32_t k = 0; k < outputs.size(); k++)
-            made.push_back(b.result(tuple, k, typeNamed(d.text(outputs[k].type))));
+    void meet(const Node& n) {
+        Kind& kind = kinds[n.kind];
+        if (kind.isMet) return;
+        kind.isMet = true;
+        const NodeKind& of = graph.kindOf(n);
+        for (const doc::Port& o : of.outputs) kind.outputs.push_back(typeNamed(d.text(o.type)));
+        for (const doc::Port& i : of.inputs)
+            kind.inputs.push_back({definitions.element(of.def, i).attribute(d.known().defaultgeomprop), {}});
+    }
+
+    // The kind of a node; asks for its function at the first of that kind.
+    const Kind& known(const Node& n) {
+        Kind& kind = kinds[n.kind];
+        if (kind.isAsked) return kind;
+        kind.isAsked = true;
+        const NodeKind& of = graph.kindOf(n);
+        std::size_t errors = diagnostics.errorCount();
+        Name defName = definitions.row(of.def).name;
+        if (!failed.count(defName)) kind.function = bodies.functionOf(of.def, diagnostics);
+        if (kind.function) return kind;
+        bool isFirst = failed.insert(defName).second;  // what is wrong with a definition is said once
+        if (isFirst && diagnostics.errorCount() == errors)
+            error(n.element, "no-implementation",
+                  fmt::format("nothing implements '{}' ({})", d.text(d[n.element].category), d.text(defName)));
+        return kind;
     }
 
     // The value of an input (`input` is null for outputs of the graph), or none where it has none of its own.
     ExprId valueOf(const Source& s, Type type, const Input* input, const Node* owner) {
         switch (s.kind) {
             case Source::Kind::Node:
-                return results[s.node.index][s.output];
+                return results[firstResult[s.node.index] + s.output];
             case Source::Kind::Interface:
                 return parameter(s.input);
             case Source::Kind::Value:
@@ -140,7 +167,7 @@ struct Lowerer {
     // An input that stands for a geometric property is that property unless it is connected. Documents write what is no
     // place or direction of a mesh there, such as 0 or a normal in tangent space, and are drawn by others without it.
     bool isGeometric(const Source& s, const Input& input, const Node& owner) {
-        Name property = definitions.element(owner.def, *input.port).attribute(d.known().defaultgeomprop);
+        Name property = kindOf(input, owner).property;
         if (!property || d[s.element].parent != owner.element) return false;
         Diagnostic& w = diagnostics.warning(
             "ignored-value",
@@ -149,6 +176,10 @@ struct Lowerer {
         w.where = d.locate(s.element, d.known().value);
         w.path = d.path(s.element);
         return true;
+    }
+
+    Kind::KindInput& kindOf(const Input& input, const Node& owner) {
+        return kinds[owner.kind].inputs[static_cast<std::size_t>(&input - graph.inputsOf(owner).data())];
     }
 
     // Where the document connects an input.
@@ -184,17 +215,21 @@ struct Lowerer {
     ExprId written(doc::ElementId element, Type type, const Input* input, const Node* owner) {
         if (type == Type::Texture2D) return texture(element, input, owner);
         const Name given = d.attribute(element, d.known().value);
+        const std::string_view text = d.text(given);
         std::string problem = "there is none";
+        Words words;
         ExprId value;
-        if (!given || !d.text(given).empty() || componentCount(type) == 0)
-            value = constantOf(b, type, d.text(given), &problem);
-        if (!value) {
+        Name live;
+        if (componentCount(type) == 0) {
+            value = constantOf(b, type, text);
+        } else if ((given && text.empty()) || !readWords(type, text, words, &problem)) {
             error(element, "bad-value", fmt::format("bad value of type {}: {}", info(type).name, problem));
             return {};
+        } else {
+            if (isLive(type, input, owner)) live = uniform(element, type, words, owner);
+            value = live ? b.uniform(live, type) : b.constant(type, words.all());
         }
-        bool live = isLive(type, input, owner);
-        if (live) value = uniform(element, type);
-        if (options.interface != Interface::Baked) record(live ? uniformOf[element] : Name(), element, input, owner);
+        if (options.interface != Interface::Baked) record(live, element, input, owner);
         if (type == Type::Color3 || type == Type::Color4)
             if (Name space = d.attribute(element, colorspace)) value = transformed(value, space, element);
         if (Name from = d.attribute(element, unit)) value = inUnits(value, from, element, input, owner);
@@ -203,7 +238,7 @@ struct Lowerer {
 
     void record(Name uniform, doc::ElementId element, const Input* input, const Node* reader) {
         if (options.authored && input)
-            options.authored->push_back({uniform, element, reader->element, reader->def, input->port});
+            options.authored->push_back({uniform, element, reader->element, graph.kindOf(*reader).def, input->port});
     }
 
     // Values that may change without a new shader: numbers, but for counts and choices that a nodedef says are fixed.
@@ -211,14 +246,15 @@ struct Lowerer {
     bool isLive(Type type, const Input* input, const Node* owner) const {
         if (options.interface == Interface::Baked || implemented || componentCount(type) == 0) return false;
         if (options.interface == Interface::Complete || !input || info(type).scalar == Scalar::Float) return true;
-        return definitions.element(owner->def, *input->port).attributeText(uniformWord) != "true";
+        return definitions.element(graph.kindOf(*owner).def, *input->port).attributeText(uniformWord) != "true";
     }
 
     Name uniformName(doc::ElementId element) {
         doc::ElementId owner = d[element].parent;
-        std::string text = fmt::format("{}_{}", d.text(d[owner].name), d.text(d[element].name));
-        if (!d[owner].name) text = d.text(d[element].name);
-        return freeName(text);
+        wanted = d.text(d[owner].name);
+        if (d[owner].name) wanted += '_';
+        wanted += d.text(d[element].name);
+        return freeName(wanted);
     }
 
     // Names of two nodes in two graphs may be one; the later is numbered.
@@ -229,19 +265,22 @@ struct Lowerer {
     }
 
     Uniform& addUniform(doc::ElementId element, Type type) {
-        Uniform u;
+        Uniform& u = module.uniforms.emplace_back();
         u.name = uniformName(element);
         u.type = type;
         u.path = d.path(element);
-        u.values = wordsOf(type, d.attributeText(element, d.known().value));
-        uniformOf[element] = u.name;
-        return module.uniforms.emplace_back(std::move(u));
+        return u;
     }
 
-    // One uniform for an element, however many nodes read it.
-    ExprId uniform(doc::ElementId element, Type type) {
-        if (auto it = uniformOf.find(element); it != uniformOf.end()) return b.uniform(it->second, type);
-        return b.uniform(addUniform(element, type).name, type);
+    // One uniform for an element, however many nodes read it: that of a node's own input, only the node itself.
+    Name uniform(doc::ElementId element, Type type, const Words& words, const Node* reader) {
+        bool isOwn = reader && d[element].parent == reader->element;
+        if (!isOwn)
+            if (auto it = uniformOf.find(element); it != uniformOf.end()) return it->second;
+        Uniform& u = addUniform(element, type);
+        u.values.assign(words.all().begin(), words.all().end());
+        if (!isOwn) uniformOf[element] = u.name;
+        return u.name;
     }
 
     ExprId texture(doc::ElementId element, const Input* input, const Node* reader) {
@@ -253,6 +292,7 @@ struct Lowerer {
 
     Name newTexture(doc::ElementId element, const Node* reader) {
         Uniform& u = addUniform(element, Type::Texture2D);
+        uniformOf[element] = u.name;
         std::string_view prefix = d.text(d.inherited(element, fileprefix));
         u.file = std::string(prefix) + std::string(d.attributeText(element, d.known().value));
         u.colorspace = d.text(d.inherited(element, colorspace));
@@ -266,13 +306,14 @@ struct Lowerer {
             std::string_view name = d.text(i.port->name);
             std::string value(i.source.kind == Source::Kind::Value
                                   ? d.attributeText(i.source.element, d.known().value)
-                                  : definitions.element(n.def, *i.port).attributeText(d.known().value));
+                                  : definitions.element(graph.kindOf(n).def, *i.port).attributeText(d.known().value));
             if (value.empty()) continue;
             if (name == "uaddressmode") u.uAddress = value;
             if (name == "vaddressmode") u.vAddress = value;
             if (name == "filtertype") u.filter = value;
-            if (name == "default")
-                for (std::uint32_t w : wordsOf(i.type, value)) u.defaultColor.push_back(std::bit_cast<float>(w));
+            Words words;
+            if (name == "default" && readWords(i.type, value, words))
+                for (std::uint32_t w : words.all()) u.defaultColor.push_back(std::bit_cast<float>(w));
         }
     }
 
@@ -299,7 +340,7 @@ struct Lowerer {
     ExprId inUnits(ExprId value, Name given, doc::ElementId at, const Input* input, const Node* owner) {
         Name word = d.names().intern("unittype");
         std::string_view type = d.attributeText(at, word), from = d.text(given);
-        if (type.empty() && input) type = definitions.element(owner->def, *input->port).attributeText(word);
+        if (type.empty() && input) type = definitions.element(graph.kindOf(*owner).def, *input->port).attributeText(word);
         std::string_view to = type == "distance" ? options.distanceUnit : type == "angle" ? options.angleUnit : from;
         if (from == to || info(b.type(value)).scalar != Scalar::Float) return value;
         float scale = bodies.unitScale(type, from), target = bodies.unitScale(type, to);
@@ -314,16 +355,18 @@ struct Lowerer {
 
     // What an input is where nothing is written: a geometric property, or the nodedef's value.
     ExprId defaultOf(const Input& input, const Node& owner) {
-        doc::ElementRef element = definitions.element(owner.def, *input.port);
-        if (Name property = element.attribute(d.known().defaultgeomprop)) {
+        auto& [property, usual] = kindOf(input, owner);
+        if (usual) return usual;
+        if (property) {
             ExprId value = geometricValue(property, owner.element);
             return fitted(value, input.source, input.type, owner.element);
         }
+        doc::ElementRef element = definitions.element(graph.kindOf(owner).def, *input.port);
         std::string_view value = element.attributeText(d.known().value);
         bool isComplete = options.interface == Interface::Complete && !implemented;
         if (input.type == Type::Texture2D || (isComplete && componentCount(input.type)))
             return unwritten(input, owner, value);
-        return constantOf(b, input.type, value);
+        return usual = constantOf(b, input.type, value);
     }
 
     // A uniform for an input that the document does not write: the host may set it.

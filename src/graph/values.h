@@ -1,19 +1,33 @@
 // Values of a document as constants of the IR.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ir/builder.h"
 
 namespace shaderx::graph {
 
-// The constant of a type that a value text means, or none where the text is not such a value (then `problem` says why).
-// Closures and empty texts give the null value. A matrix is written row by row and multiplies row vectors from the
-// right, as MaterialX has it; in the IR, whose vectors are columns, its rows become columns.
-ir::ExprId constantOf(ir::Builder& b, ir::Type type, std::string_view text, std::string* problem = nullptr);
+// The bits of a value of a type that has components.
+struct Words {
+    std::array<std::uint32_t, 16> bits{};
+    std::uint32_t count = 0;
+    std::span<const std::uint32_t> all() const { return {bits.data(), count}; }
+};
 
-// Its bits, for uniforms; empty where it is none or has no numbers.
+// Reads a value's text; the empty text is zero. False where the text is not such a value (then `problem` says why) and
+// for types without components. A matrix is written row by row and multiplies row vectors from the right, as MaterialX
+// has it; in the IR, whose vectors are columns, its rows become columns.
+bool readWords(ir::Type type, std::string_view text, Words& words, std::string* problem = nullptr);
+
+// The same as a list; empty where the text is not such a value.
 std::vector<std::uint32_t> wordsOf(ir::Type type, std::string_view text);
+
+// The constant that a value's text means, or none where it means none. Closures and empty texts give the null value.
+ir::ExprId constantOf(ir::Builder& b, ir::Type type, std::string_view text);
 
 }  // namespace shaderx::graph
