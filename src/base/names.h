@@ -73,10 +73,10 @@ class NameTable {
     Name intern(std::string_view text) {
         if (text.size() > 8) return internAny(text);
         const std::uint64_t word = shortText(text);
-        Recent& r = recent_[word * 0x9e3779b97f4a7c15u >> 56];
-        if (r.word != word || r.size != text.size())
-            r = {word, static_cast<std::uint32_t>(text.size()), internAny(text)};
-        return r.name;
+        const std::uint32_t end = static_cast<std::uint32_t>(text.size()) + 1;
+        Recent& r = recent_[word * 0x9e3779b97f4a7c15u >> 54];
+        if (r.word != word || r.end != end) r = {word, end, internAny(text).index};
+        return Name(r.name);
     }
     // The name of a text if it was interned before, else none.
     Name find(std::string_view text) const;
@@ -88,8 +88,7 @@ class NameTable {
     // Documents say the same few words again and again: the last short text of a hash is found without a search.
     struct Recent {
         std::uint64_t word = 0;
-        std::uint32_t size = Name::kNone;
-        Name name;
+        std::uint32_t end = 0, name = 0;  // its size + 1, or 0 for none
     };
 
     Name internAny(std::string_view text);
@@ -100,7 +99,7 @@ class NameTable {
     std::string_view store(std::string_view text);
 
     NameImage image_;
-    std::array<Recent, 256> recent_{};
+    std::array<Recent, 1024> recent_{};
     std::vector<std::string_view> texts_;
     std::vector<std::uint32_t> slots_;  // as in NameImage, for the names after the image's
     std::vector<std::unique_ptr<char[]>> chunks_;

@@ -212,11 +212,15 @@ Match Definitions::match(const Query& q) const {
     }
     auto fits = [&](NodeDef def) {
         auto ports = inputs(def);
-        return std::all_of(q.inputs.begin(), q.inputs.end(), [&](const GivenInput& given) {
-            return std::any_of(ports.begin(), ports.end(), [&](const Port& p) {
-                return p.name == given.name && (!given.type || p.type == given.type);
-            });
-        });
+        std::size_t at = 0;  // given inputs mostly come in the order of the ports
+        for (const GivenInput& given : q.inputs) {
+            auto same = [&](const Port& p) { return p.name == given.name; };
+            if (at >= ports.size() || !same(ports[at]))
+                at = static_cast<std::size_t>(std::find_if(ports.begin(), ports.end(), same) - ports.begin());
+            if (at == ports.size() || (given.type && ports[at].type != given.type)) return false;
+            at++;
+        }
+        return true;
     };
     if (q.nodedef) {
         NodeDef def = byName(q.nodedef, q.space);

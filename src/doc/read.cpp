@@ -29,10 +29,12 @@ class DocumentFiller {
     }
     // An attribute of the element that is added next.
     void attribute(Name name, Name value) {
-        d_.ownAttributes_.push_back({name, value});
-        pending_++;
+        if (attributes_ == d_.ownAttributes_.size()) makeRoom();
+        d_.ownAttributes_[attributes_++] = {name, value};
     }
-    std::span<const Attribute> pending() const { return std::span<const Attribute>(d_.ownAttributes_).last(pending_); }
+    std::span<const Attribute> pending() const {
+        return std::span<const Attribute>(d_.ownAttributes_).subspan(taken_, attributes_ - taken_);
+    }
     ElementId add(Name category, ElementId parent, std::uint32_t source, std::size_t offset) {
         ElementId id = d_.addElement(category, parent);
         complete(id, source, offset);
@@ -43,13 +45,17 @@ class DocumentFiller {
         Element& e = d_.ownElements_[id.index];
         e.source = source;
         e.offset = static_cast<std::uint32_t>(offset);
-        e.attributeCount = static_cast<std::uint32_t>(pending_);
-        e.firstAttribute = static_cast<std::uint32_t>(d_.ownAttributes_.size() - pending_);
+        e.attributeCount = static_cast<std::uint32_t>(attributes_ - taken_);
+        e.firstAttribute = static_cast<std::uint32_t>(taken_);
         for (const Attribute& a : pending()) {
             if (a.name == d_.known_.name) e.name = a.value;
             if (a.name == d_.known_.namespaceName) d_.hasNamespaces_ = true;
         }
-        pending_ = 0;
+        taken_ = attributes_;
+        d_.refresh();
+    }
+    void finish() {
+        d_.ownAttributes_.resize(attributes_);
         d_.refresh();
     }
     // Comments before the root (`last` is none at first) and after it.
@@ -60,8 +66,16 @@ class DocumentFiller {
     void setName(ElementId id, Name name) { d_.ownElements_[id.index].name = name; }
 
   private:
+    // Apart, so that what is called for every attribute stays small.
+    [[gnu::noinline]] void makeRoom() {
+        std::vector<Attribute>& all = d_.ownAttributes_;
+        all.resize(std::max<std::size_t>({64, all.capacity(), all.size() * 2}));
+        d_.refresh();
+    }
+
     Document& d_;
-    std::size_t pending_ = 0;
+    // Of ownAttributes_, those that are filled, and of these, those of elements that are complete. The rest is room.
+    std::size_t attributes_ = 0, taken_ = 0;
 };
 
 namespace {
@@ -218,8 +232,9 @@ bool Reader::checkRoot(std::uint32_t source, pugi::xml_node root) {
 void Reader::attributes(pugi::xml_node n, const Frame& f, bool topLevel) {
     bool passes = topLevel && f.source != 0;
     auto has = [&](Name name) {
-        auto all = fill.pending();
-        return std::any_of(all.begin(), all.end(), [&](const Attribute& a) { return a.name == name; });
+        for (const Attribute& a : fill.pending())
+            if (a.name == name) return true;
+        return false;
     };
     std::size_t count = 0;
     for (pugi::xml_attribute a = n.first_attribute(); a; a = a.next_attribute(), count++) {
@@ -421,6 +436,7 @@ Result<ElementId> read(Document& document, std::string_view fileName, std::strin
     }
     std::string file(fileName);
     if (reader.openFile(normalPath(file), std::move(text), directoryOf(file), {})) reader.merge();
+    reader.fill.finish();
     if (diagnostics.errorCount() != errors) return Failure{};
     return document.root();
 }

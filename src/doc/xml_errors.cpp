@@ -157,12 +157,14 @@ std::optional<XmlProblem> findXmlProblem(std::string_view text) {
 std::optional<std::size_t> findBadByte(std::string_view text) {
     const unsigned char* p = reinterpret_cast<const unsigned char*>(text.data());
     for (std::size_t i = 0; i < text.size();) {
-        if (i + 8 <= text.size()) {  // eight ASCII bytes at once: no high bit set, and none is zero
+        if (i + 32 <= text.size()) {  // ASCII at once: no high bit set, and no byte is zero
             constexpr std::uint64_t kHigh = 0x8080808080808080u, kOnes = 0x0101010101010101u;
-            std::uint64_t word = 0;
-            std::memcpy(&word, p + i, 8);
-            if ((word & kHigh) == 0 && ((word - kOnes) & kHigh) == 0) {
-                i += 8;
+            std::uint64_t w[4];
+            std::memcpy(w, p + i, 32);
+            std::uint64_t high = w[0] | w[1] | w[2] | w[3];
+            for (std::uint64_t word : w) high |= word - kOnes;  // sets the high bit of a byte that is zero
+            if ((high & kHigh) == 0) {
+                i += 32;
                 continue;
             }
         }

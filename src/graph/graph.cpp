@@ -88,6 +88,7 @@ struct GraphBuilder {
     Progress progress{};
     std::vector<Frame> stack{};
     std::unordered_map<std::uint64_t, std::uint32_t> kinds{};  // by layer and row of the nodedef
+    std::array<std::pair<Name, ir::Type>, 16> types{};
     std::vector<Shape> shapes{};
     std::array<std::uint32_t, 64> shapeAt{};  // by category and type: shape + 1
     std::vector<doc::GivenInput> given{};     // of the node at hand, and their elements
@@ -220,8 +221,11 @@ struct GraphBuilder {
         frame.output = output;
         // Each input starts out with the port that the document has for it.
         auto ports = graph.kinds[shape.kind].inputs;
+        std::size_t first = graph.inputs.size(), end = first + ports.size();
+        if (end > graph.inputs.capacity()) graph.inputs.reserve(std::max(end, first * 2));
+        graph.inputs.resize(end);
         for (std::size_t i = 0; i < ports.size(); i++) {
-            Input& input = graph.inputs.emplace_back();
+            Input& input = graph.inputs[first + i];
             input.port = &ports[i];
             input.type = shape.types[i];
             if (shape.from[i] != Shape::kAbsent)
@@ -245,6 +249,8 @@ struct GraphBuilder {
         q.space = d.namespaceOf(element);
         given.clear();
         givenElements.clear();
+        given.reserve(16);
+        givenElements.reserve(16);
         hasOthers = false;
         for (ElementId c : doc::children(d, element)) {
             if (d[c].category != k.input || !d[c].name) {
@@ -272,15 +278,33 @@ struct GraphBuilder {
         shape.match = definitions.match(whole);
         shape.from.clear();
         shape.types.clear();
+        shape.types.reserve(given.size());
         if (!shape.match) return;
         shape.kind = kindOf(shape.match.def);
-        for (const doc::Port& port : graph.kinds[shape.kind].inputs) {
-            shape.types.push_back(ir::typeNamed(d.text(port.type)));
-            auto same = [&](const doc::GivenInput& g) { return g.name == port.name; };
-            auto found = std::find_if(given.begin(), given.end(), same);
-            shape.from.push_back(found == given.end() ? Shape::kAbsent
-                                                      : static_cast<std::uint32_t>(found - given.begin()));
+        auto ports = graph.kinds[shape.kind].inputs;
+        for (const doc::Port& port : ports) shape.types.push_back(typeOf(port.type));
+        // Backwards, so that of two of one name the first one counts. They mostly come in the order of the ports.
+        shape.from.assign(ports.size(), Shape::kAbsent);
+        std::size_t at = ports.size();
+        for (std::size_t g = given.size(); g-- > 0;) {
+            auto same = [&](const doc::Port& p) { return p.name == given[g].name; };
+            if (at == 0 || !same(ports[at - 1]))
+                at = static_cast<std::size_t>(std::find_if(ports.begin(), ports.end(), same) - ports.begin()) + 1;
+            if (at > ports.size())
+                at = ports.size();
+            else
+                shape.from[--at] = static_cast<std::uint32_t>(g);
         }
+    }
+
+    // Types have few names.
+    ir::Type typeOf(Name name) {
+        auto& [known, type] = types[name.index % types.size()];
+        if (known != name) {
+            known = name;
+            type = ir::typeNamed(d.text(name));
+        }
+        return type;
     }
 
     std::uint32_t kindOf(doc::NodeDef def) {

@@ -31,8 +31,8 @@ struct Source {
 };
 
 struct Input {
-    const doc::Port* port;  // of the nodedef
-    ir::Type type;
+    const doc::Port* port = nullptr;  // of the nodedef
+    ir::Type type = ir::Type::Void;
     Source source;
 };
 

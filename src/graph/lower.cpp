@@ -292,7 +292,6 @@ struct Lowerer {
 
     Name newTexture(doc::ElementId element, const Node* reader) {
         Uniform& u = addUniform(element, Type::Texture2D);
-        uniformOf[element] = u.name;
         std::string_view prefix = d.text(d.inherited(element, fileprefix));
         u.file = std::string(prefix) + std::string(d.attributeText(element, d.known().value));
         u.colorspace = d.text(d.inherited(element, colorspace));
