@@ -52,7 +52,6 @@ class DocumentFiller {
             if (a.name == d_.known_.namespaceName) d_.hasNamespaces_ = true;
         }
         taken_ = attributes_;
-        d_.refresh();
     }
     void finish() {
         d_.ownAttributes_.resize(attributes_);

@@ -35,7 +35,8 @@ TEST(Values, ParsesEachKind) {
 
 // The quick reader of numbers and the one that explains must take the same texts.
 TEST(Values, WordsAreThoseOfTheValue) {
-    const std::string_view parts[] = {"", " ", "1", "-2.5", "+3", "1e2", ",", ", ", "x", "nan", "1.", ".5", "1e", "true"};
+    const std::string_view parts[] = {"",   " ", "1",   "-2.5", "+3", "1e2", ",",
+                                      ", ", "x", "nan", "1.",   ".5", "1e",  "true"};
     std::uint32_t words[16];
     for (std::string_view a : parts)
         for (std::string_view b : parts)

@@ -159,10 +159,13 @@ std::optional<std::size_t> findBadByte(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
         if (i + 32 <= text.size()) {  // ASCII at once: no high bit set, and no byte is zero
             constexpr std::uint64_t kHigh = 0x8080808080808080u, kOnes = 0x0101010101010101u;
-            std::uint64_t w[4];
-            std::memcpy(w, p + i, 32);
-            std::uint64_t high = w[0] | w[1] | w[2] | w[3];
-            for (std::uint64_t word : w) high |= word - kOnes;  // sets the high bit of a byte that is zero
+            std::uint64_t a = 0, b = 0, c = 0, d = 0;
+            std::memcpy(&a, p + i, 8);
+            std::memcpy(&b, p + i + 8, 8);
+            std::memcpy(&c, p + i + 16, 8);
+            std::memcpy(&d, p + i + 24, 8);
+            // Taking one off sets the high bit of a byte that is zero.
+            std::uint64_t high = a | b | c | d | (a - kOnes) | (b - kOnes) | (c - kOnes) | (d - kOnes);
             if ((high & kHigh) == 0) {
                 i += 32;
                 continue;

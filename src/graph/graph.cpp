@@ -308,8 +308,8 @@ struct GraphBuilder {
     }
 
     std::uint32_t kindOf(doc::NodeDef def) {
-        auto [it, isNew] = kinds.try_emplace(std::uint64_t(def.layer) << 32 | def.row,
-                                             static_cast<std::uint32_t>(graph.kinds.size()));
+        auto [it, isNew] =
+            kinds.try_emplace(std::uint64_t(def.layer) << 32 | def.row, static_cast<std::uint32_t>(graph.kinds.size()));
         if (isNew) graph.kinds.push_back({def, definitions.inputs(def), definitions.outputs(def)});
         return it->second;
     }

@@ -40,13 +40,13 @@ struct Lowerer {
     std::vector<ExprId> results{};             // of all nodes in turn, each with its outputs in order
     std::vector<std::uint32_t> firstResult{};  // by node
     std::vector<Kind> kinds = std::vector<Kind>(graph.kinds.size());
-    std::vector<ExprId> operands{};            // of the node at hand
+    std::vector<ExprId> operands{};  // of the node at hand
     std::unordered_map<Name, ExprId> geometric{};
     std::unordered_map<doc::ElementId, Name> uniformOf{};
     Name colorspace = d.names().intern("colorspace"), fileprefix = d.names().intern("fileprefix");
     Name uniformWord = d.names().intern("uniform"), unit = d.names().intern("unit");
     std::unordered_set<Name> failed{};  // nodedefs without a function
-    std::string wanted{};           // room to make a uniform's name in
+    std::string wanted{};               // room to make a uniform's name in
     bool ok = true;
 
     bool run(Name name) {
@@ -115,8 +115,8 @@ struct Lowerer {
                 value = transformed(value, fileSpace, n.element);
             if (fileUnit) value = inUnits(value, fileUnit, file->source.element, file, &n);
             Name output = graph.kindOf(n).outputs[k].name;
-            b.hint(value, isSingle ? nodeName
-                                   : d.names().intern(fmt::format("{}_{}", d.text(nodeName), d.text(output))));
+            b.hint(value,
+                   isSingle ? nodeName : d.names().intern(fmt::format("{}_{}", d.text(nodeName), d.text(output))));
             results.push_back(value);
         }
     }
@@ -216,13 +216,14 @@ struct Lowerer {
         if (type == Type::Texture2D) return texture(element, input, owner);
         const Name given = d.attribute(element, d.known().value);
         const std::string_view text = d.text(given);
-        std::string problem = "there is none";
         Words words;
         ExprId value;
         Name live;
         if (componentCount(type) == 0) {
             value = constantOf(b, type, text);
-        } else if ((given && text.empty()) || !readWords(type, text, words, &problem)) {
+        } else if ((given && text.empty()) || !readWords(type, text, words)) {
+            std::string problem = "there is none";
+            if (!text.empty()) readWords(type, text, words, &problem);
             error(element, "bad-value", fmt::format("bad value of type {}: {}", info(type).name, problem));
             return {};
         } else {
@@ -339,7 +340,8 @@ struct Lowerer {
     ExprId inUnits(ExprId value, Name given, doc::ElementId at, const Input* input, const Node* owner) {
         Name word = d.names().intern("unittype");
         std::string_view type = d.attributeText(at, word), from = d.text(given);
-        if (type.empty() && input) type = definitions.element(graph.kindOf(*owner).def, *input->port).attributeText(word);
+        if (type.empty() && input)
+            type = definitions.element(graph.kindOf(*owner).def, *input->port).attributeText(word);
         std::string_view to = type == "distance" ? options.distanceUnit : type == "angle" ? options.angleUnit : from;
         if (from == to || info(b.type(value)).scalar != Scalar::Float) return value;
         float scale = bodies.unitScale(type, from), target = bodies.unitScale(type, to);
