@@ -24,7 +24,7 @@ struct Words {
 // has it; in the IR, whose vectors are columns, its rows become columns.
 bool readWords(ir::Type type, std::string_view text, Words& words, std::string* problem = nullptr);
 
-// The same as a list; empty where the text is not such a value.
+// The same as a list, zeros for an empty text; empty where the text is not such a value.
 std::vector<std::uint32_t> wordsOf(ir::Type type, std::string_view text);
 
 // The constant that a value's text means, or none where it means none. Closures and empty texts give the null value.
