@@ -138,6 +138,16 @@ void reportInheritCycles(const Document& d, const Definitions& definitions, Diag
     for (ElementId start : children(d, d.root())) {
         if (d[start].category != k.nodedef) continue;
         walk++;
+        if (NodeDef def = definitions.byName(d.qualified(d.namespaceOf(start), d[start].name));
+            def && definitions.row(def).flags & NodeDefRow::TooManyPorts) {
+            Diagnostic& out = diagnostics.error(
+                "limit",
+                fmt::format("the nodedef has more than {} inputs or outputs, or those of all nodedefs are too many",
+                            NodeDefRow::kMostPorts));
+            out.where = d.locate(start);
+            out.path = d.path(start);
+            out.hint = "several nodes may share the work";
+        }
         for (ElementId at = start; at && seen[at.index] < walk;) {
             if (seen[at.index]) break;  // an earlier walk has been here
             seen[at.index] = walk;

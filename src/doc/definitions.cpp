@@ -12,13 +12,18 @@ bool isInterface(const WellKnown& k, Name category) {
     return category == k.input || category == k.output || category == k.parameter;
 }
 
-// Puts the ports of a nodedef's element into lists that already hold those of its base.
-void mergePorts(const Document& d, ElementId nodedef, std::uint32_t layer, std::vector<Port>& inputs,
+// Puts the ports of a nodedef's element into lists that already hold those of its base. False if some found no room.
+bool mergePorts(const Document& d, ElementId nodedef, std::uint32_t layer, std::vector<Port>& inputs,
                 std::vector<Port>& outputs) {
     const WellKnown& k = d.known();
+    bool fits = true;
     for (ElementId c : children(d, nodedef)) {
         if (!isInterface(k, d[c].category) || !d[c].name) continue;
         std::vector<Port>& ports = d[c].category == k.output ? outputs : inputs;
+        if (ports.size() == NodeDefRow::kMostPorts) {
+            fits = false;
+            continue;
+        }
         Port port{d[c].name, d.attribute(c, k.type), c, layer};
         auto same = std::find_if(ports.begin(), ports.end(), [&](const Port& p) { return p.name == port.name; });
         if (same != ports.end())
@@ -29,12 +34,16 @@ void mergePorts(const Document& d, ElementId nodedef, std::uint32_t layer, std::
     // Before 1.37, a nodedef with one output says its type itself.
     if (Name type = d.attribute(nodedef, k.type); outputs.empty() && type && type != k.multioutput)
         outputs.push_back({k.out, type, nodedef, layer});
+    return fits;
 }
 
 struct Builder {
+    enum class State : std::uint8_t { New, UnderWay, Done };
+
     const Document& d;
     const WellKnown& k;
     DefinitionsTables t{};
+    std::vector<State> states{};  // of the nodedefs' ports
 
     Name space(ElementId e) const { return d.namespaceOf(e); }
 
@@ -70,22 +79,50 @@ struct Builder {
             std::lower_bound(t.names.begin(), t.names.end(), name, [](const NameRow& r, Name n) { return r.name < n; });
         return at != t.names.end() && at->name == name ? &t.nodedefs[at->row] : nullptr;
     }
+    std::size_t indexOf(const NodeDefRow& row) const { return static_cast<std::size_t>(&row - t.nodedefs.data()); }
     const NodeDefRow* base(const NodeDefRow& row) const {
         if (!row.inherit) return nullptr;
         const NodeDefRow* found = byName(d.qualified(space(row.element), row.inherit));
         return found ? found : byName(row.inherit);
     }
 
-    void ports(NodeDefRow& row) {
-        std::vector<const NodeDefRow*> chain{&row};
-        while (const NodeDefRow* b = base(*chain.back())) {
-            if (std::find(chain.begin(), chain.end(), b) != chain.end()) break;  // a cycle; checking reports it
-            chain.push_back(b);
+    // The ports of a row after those of what it inherits, each computed once, on a stack of our own.
+    void ports(NodeDefRow* row) {
+        std::vector<NodeDefRow*> chain;
+        const NodeDefRow* known = row;
+        while (known && states[indexOf(*known)] == State::New) {
+            chain.push_back(&t.nodedefs[indexOf(*known)]);
+            states[indexOf(*known)] = State::UnderWay;
+            known = base(*known);
         }
-        if (chain.back()->inherit && !base(*chain.back())) row.flags |= NodeDefRow::OpenInherit;
+        if (known && states[indexOf(*known)] == State::UnderWay) {
+            for (NodeDefRow* r : chain) r->flags |= NodeDefRow::InheritsItself;
+            known = nullptr;
+        }
+        for (; !chain.empty(); chain.pop_back()) {
+            merge(known, *chain.back());
+            known = chain.back();
+            states[indexOf(*known)] = State::Done;
+        }
+    }
+
+    void merge(const NodeDefRow* from, NodeDefRow& row) {
+        constexpr std::size_t kMostInAll = std::size_t{4} << 20;
+        constexpr std::uint32_t kPassedOn =
+            NodeDefRow::OpenInherit | NodeDefRow::InheritsItself | NodeDefRow::TooManyPorts;
+        if (from) row.flags |= from->flags & kPassedOn;
+        if (row.inherit && !base(row)) row.flags |= NodeDefRow::OpenInherit;
         std::vector<Port> inputs, outputs;
-        for (auto c = chain.rbegin(); c != chain.rend(); ++c)
-            mergePorts(d, (*c)->element, Port::kOwnLayer, inputs, outputs);
+        if (from) {
+            auto first = t.ports.begin() + from->firstPort;
+            inputs.assign(first, first + from->inputCount);
+            outputs.assign(first + from->inputCount, first + from->inputCount + from->outputCount);
+        }
+        bool fits = mergePorts(d, row.element, Port::kOwnLayer, inputs, outputs);
+        if (!fits || t.ports.size() + inputs.size() + outputs.size() > kMostInAll) {
+            row.flags |= NodeDefRow::TooManyPorts;
+            inputs.clear();
+        }
         row.firstPort = static_cast<std::uint32_t>(t.ports.size());
         row.inputCount = static_cast<std::uint32_t>(inputs.size());
         row.outputCount = static_cast<std::uint32_t>(outputs.size());
@@ -108,7 +145,8 @@ struct Builder {
         for (std::uint32_t i = 0; i < t.nodedefs.size(); i++) t.names.push_back({t.nodedefs[i].name, i});
         std::sort(t.names.begin(), t.names.end(),
                   [](const NameRow& a, const NameRow& b) { return std::tie(a.name, a.row) < std::tie(b.name, b.row); });
-        for (NodeDefRow& row : t.nodedefs) ports(row);
+        states.assign(t.nodedefs.size(), State::New);
+        for (NodeDefRow& row : t.nodedefs) ports(&row);
         for (ImplementationRow& row : t.implementations)  // "space:name" where there is such a nodedef here
             if (row.kind != ImplementationRow::CategoryWide)
                 if (Name full = d.qualified(space(row.element), row.key); byName(full)) row.key = full;
@@ -283,6 +321,18 @@ Match Definitions::match(const Document& d, ElementId node, Name target) const {
     return match(q);
 }
 
+// Notices that a walk goes in a circle: it comes back to a place kept, which moves up at every power of two steps.
+struct Revisit {
+    NodeDef kept{};
+    std::uint32_t steps = 0;
+    bool met(NodeDef at) {
+        if (at == kept) return true;
+        if ((steps & (steps + 1)) == 0) kept = at;
+        steps++;
+        return false;
+    }
+};
+
 NodeDef Definitions::base(NodeDef def) const {
     const NodeDefRow& r = row(def);
     return r.inherit ? byName(r.inherit, layers_[def.layer].document->namespaceOf(r.element)) : NodeDef{};
@@ -291,18 +341,15 @@ NodeDef Definitions::base(NodeDef def) const {
 // The interface of a nodedef whose base is in another document; null for others.
 const Definitions::Flat* Definitions::flatten(NodeDef def) const {
     if (!(row(def).flags & NodeDefRow::OpenInherit)) return nullptr;
-    for (const Flat& f : flat_)
-        if (f.def == def) return &f;
+    auto [at, isNew] = flat_.try_emplace(std::uint64_t{def.layer} << 32 | def.row);
+    if (!isNew) return &at->second;
     std::vector<NodeDef> chain{def};
-    while (NodeDef b = base(chain.back())) {
-        if (std::find(chain.begin(), chain.end(), b) != chain.end()) break;
-        chain.push_back(b);
-    }
+    Revisit revisit;
+    for (NodeDef b = base(def); b && !revisit.met(b); b = base(b)) chain.push_back(b);
     std::vector<Port> in, out;
     for (auto c = chain.rbegin(); c != chain.rend(); ++c)
-        mergePorts(*layers_[c->layer].document, row(*c).element, c->layer, in, out);
-    Flat& f = flat_.emplace_back();
-    f.def = def;
+        if (!mergePorts(*layers_[c->layer].document, row(*c).element, c->layer, in, out)) break;
+    Flat& f = at->second;
     f.inputCount = static_cast<std::uint32_t>(in.size());
     f.ports = std::move(in);
     f.ports.insert(f.ports.end(), out.begin(), out.end());
@@ -378,9 +425,8 @@ Implementation Definitions::inLayer(const Layer& layer, Name key, bool categoryW
 }
 
 Implementation Definitions::implementation(NodeDef def, std::span<const Name> targets) const {
-    std::vector<NodeDef> chain;
-    for (NodeDef at = def; at && std::find(chain.begin(), chain.end(), at) == chain.end(); at = base(at)) {
-        chain.push_back(at);
+    Revisit revisit;
+    for (NodeDef at = def; at && !revisit.met(at); at = base(at)) {
         for (const Layer& layer : layers_) {
             if (Implementation found = inLayer(layer, row(at).name, false, targets)) return found;
             if (Implementation found = inLayer(layer, row(at).category, true, targets)) return found;

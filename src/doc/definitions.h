@@ -1,9 +1,9 @@
 // Node definitions and implementations of a list of documents.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "doc/document.h"
@@ -20,7 +20,13 @@ struct Port {
 };
 
 struct NodeDefRow {
-    enum : std::uint32_t { DefaultVersion = 1, OpenInherit = 2 };
+    enum : std::uint32_t {
+        DefaultVersion = 1,
+        OpenInherit = 2,     // what it inherits is in another document
+        InheritsItself = 4,  // at once, or by way of others: what it inherits is left out
+        TooManyPorts = 8,    // more than kMostPorts, or too many in all: they are left out
+    };
+    static constexpr std::size_t kMostPorts = 4096;
 
     Name category;  // of its nodes, with the namespace: "mix", "studio:rust"
     Name name;      // with the namespace
@@ -28,7 +34,7 @@ struct NodeDefRow {
     Name version, target, inherit;
     ElementId element;
     std::uint32_t firstPort = 0, inputCount = 0, outputCount = 0;  // inherited ones included; the inputs come first
-    std::uint32_t flags = 0;  // OpenInherit: what it inherits is in another document
+    std::uint32_t flags = 0;
 };
 
 struct ImplementationRow {
@@ -151,7 +157,6 @@ class Definitions {
         std::unique_ptr<DefinitionsTables> own;
     };
     struct Flat {
-        NodeDef def;
         std::vector<Port> ports;
         std::uint32_t inputCount = 0;
     };
@@ -161,7 +166,7 @@ class Definitions {
     Implementation inLayer(const Layer& layer, Name key, bool categoryWide, std::span<const Name> targets) const;
 
     std::vector<Layer> layers_;
-    mutable std::deque<Flat> flat_;  // of nodedefs that inherit across documents
+    mutable std::unordered_map<std::uint64_t, Flat> flat_;  // of nodedefs that inherit across documents
 };
 
 }  // namespace shaderx::doc

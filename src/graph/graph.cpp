@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -94,6 +95,9 @@ struct GraphBuilder {
     std::vector<doc::GivenInput> given{};     // of the node at hand, and their elements
     std::vector<ElementId> givenElements{};
     bool hasOthers = false;  // has it children by name that are no inputs?
+    std::unordered_set<ElementId> circular{};  // ports that lead in a circle
+    std::unordered_map<ElementId, ElementId>
+        shortcuts{};  // from ports within long rows of ports to the last of the row
     bool ok = true;
 
     bool run(ElementId element) {
@@ -135,8 +139,7 @@ struct GraphBuilder {
         return e;
     }
 
-    // Follows a port to its value or node; builds what is upstream of it. Ports lead to ports only a few times in a
-    // row, but a document may try otherwise, so the steps are counted.
+    // Follows a port to its value or node; builds what is upstream of it.
     bool resolve(ElementId port, Source& source) {
         Name output;
         ElementId target = follow(port, source, output);
@@ -145,11 +148,22 @@ struct GraphBuilder {
         return pickOutput(port, output, source);
     }
 
-    // Leaves the value or interface in `source`, or returns the node that the port leads to.
+    // Leaves the value or interface in `source`, or returns the node that the port leads to. Ports lead to ports only a
+    // few times in a row, but a document may try otherwise: a circle is found where the row comes back to `passed`,
+    // which moves up at every power of two steps; a long row is walked once.
     ElementId follow(ElementId port, Source& source, Name& output) {
-        constexpr int kMostSteps = 100000;
-        for (int step = 0; step < kMostSteps; step++) {
+        constexpr std::uint32_t kLong = 64;
+        ElementId passed, longFrom;
+        for (std::uint32_t step = 1;; step++) {
+            if (step == kLong) {
+                longFrom = port;
+                if (auto it = shortcuts.find(port); it != shortcuts.end()) port = it->second;
+            }
+            if (port == passed || (!circular.empty() && circular.count(port))) return circle(port);
+            if ((step & (step - 1)) == 0) passed = port;
             Connection c = doc::connection(d, port);
+            bool isLast = c.kind != Connection::Kind::Output && c.kind != Connection::Kind::Interface;
+            if (isLast && longFrom) shortcuts[longFrom] = port;
             switch (c.kind) {
                 case Connection::Kind::None:
                     if (d.attribute(port, d.known().value)) source = {Source::Kind::Value, {}, 0, port, {}};
@@ -180,7 +194,14 @@ struct GraphBuilder {
                 }
             }
         }
+    }
+
+    // Says once that the ports from this one on lead back to it.
+    ElementId circle(ElementId port) {
+        ok = false;
+        if (circular.count(port)) return {};
         error(port, "cycle", "connections lead in a circle");
+        while (circular.insert(port).second) port = doc::connection(d, port).target;
         return {};
     }
 
@@ -215,6 +236,9 @@ struct GraphBuilder {
                   fmt::format("no definition of '{}' fits this node", d.text(d[element].category)));
             return false;
         }
+        constexpr std::uint32_t kBroken = doc::NodeDefRow::InheritsItself | doc::NodeDefRow::TooManyPorts;
+        if (std::uint32_t flags = definitions.row(shape.match.def).flags; flags & kBroken)
+            return refuse(element, flags);
         graph.isExact = graph.isExact && shape.match.exact;
         Frame& frame = stack.emplace_back();
         frame.node = {element, shape.kind, static_cast<std::uint32_t>(graph.inputs.size())};
@@ -312,6 +336,17 @@ struct GraphBuilder {
             kinds.try_emplace(std::uint64_t(def.layer) << 32 | def.row, static_cast<std::uint32_t>(graph.kinds.size()));
         if (isNew) graph.kinds.push_back({def, definitions.inputs(def), definitions.outputs(def)});
         return it->second;
+    }
+
+    // A node whose nodedef has no interface that could be told.
+    bool refuse(ElementId element, std::uint32_t flags) {
+        std::string_view category = d.text(d[element].category);
+        if (flags & doc::NodeDefRow::InheritsItself)
+            error(element, "inherit-cycle", fmt::format("the nodedef of '{}' inherits itself", category));
+        else
+            error(element, "limit", fmt::format("the nodedef of '{}' has too many inputs and outputs", category)).hint =
+                "several nodes may share the work";
+        return false;
     }
 
     // One input of the topmost node, or the node itself when all are there.
