@@ -22,13 +22,30 @@ std::optional<std::string> readFile(const std::string& path, std::size_t maxByte
     return text;
 }
 
+// A path as the directory itself, "" where it is the current one.
+static bool isBelow(std::string_view path, std::string_view directory) {
+    std::string top = normalPath(directory);
+    if (top.empty() && !directory.starts_with('/')) return !path.starts_with('/') && !path.starts_with("../");
+    if (top == "/" || top.empty()) return path.starts_with('/');
+    if (top.ends_with("..") && path.starts_with(top + "/..")) return false;
+    return path.starts_with(top) && path.size() > top.size() && path[top.size()] == '/';
+}
+
+bool FileResolver::isWithin(std::string_view path) const {
+    if (isBelow(path, *root_)) return true;
+    for (const std::string& directory : searchPaths_)
+        if (isBelow(path, directory)) return true;
+    return false;
+}
+
 std::optional<ResolvedFile> FileResolver::resolve(std::string_view href, std::string_view fromDirectory) {
+    if (!root_) root_ = std::string(fromDirectory);
     auto tryIn = [&](std::string_view directory) -> std::optional<ResolvedFile> {
         std::string path;
         bool absolute = href.starts_with('/') || (href.size() > 1 && href[1] == ':');
         if (!absolute && !directory.empty()) path.append(directory).append("/");
         path = normalPath(path.append(href));
-        std::optional<std::string> text = readFile(path, maxBytes_);
+        std::optional<std::string> text = isWithin(path) ? readFile(path, maxBytes_) : std::nullopt;
         if (!text) return {};
         std::string directoryOfFile = directoryOf(path);
         return ResolvedFile{std::move(path), std::move(directoryOfFile), std::move(*text)};

@@ -79,6 +79,12 @@ class DocumentFiller {
 
 namespace {
 
+constexpr std::size_t kLarge = 1u << 20;  // from here on, a count before is worth it
+
+std::size_t countOf(std::string_view text, char c) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), c));
+}
+
 constexpr unsigned kParseFlags = pugi::parse_default | pugi::parse_comments | pugi::parse_pi | pugi::parse_doctype;
 
 // What an included root passes on to the elements it brings in.
@@ -108,6 +114,7 @@ struct Reader {
     const WellKnown& known;
     std::vector<Frame> frames{};
     std::vector<std::string> files{};  // by source
+    std::size_t tokens = 0;            // tags and attributes of all large files
 
     Diagnostic& error(std::string_view code, std::string message, std::uint32_t source, std::size_t offset) {
         Diagnostic& d = diagnostics.error(code, std::move(message));
@@ -169,16 +176,22 @@ std::optional<std::uint32_t> Reader::checkedSource(std::string file, std::string
     if (wide || tooLarge) text.clear();
     std::uint32_t source = document.addSource({std::move(file), std::move(text), std::move(directory), {}});
     const std::string& kept = document.sources()[source].text;
+    // Counted before the parser takes memory for each.
+    if (kept.size() > kLarge) tokens += countOf(kept, '<') + countOf(kept, '=');
     if (tooLarge) {
         error("limit", fmt::format("the file is larger than {} bytes", options.maxFileBytes), source, 0);
     } else if (wide) {
         error("bad-encoding", "the file is UTF-16 or UTF-32; only UTF-8 is read", source, 0).hint = "save it as UTF-8";
+    } else if (tokens / 2 > options.maxElements) {
+        error("limit", fmt::format("the document has more than {} elements", options.maxElements), source, 0);
     } else if (std::optional<std::size_t> bad = findBadByte(kept)) {
         error("bad-encoding",
               kept[*bad] == '\0'
                   ? "a zero byte is not text"
                   : fmt::format("byte {:#04x} is not UTF-8 here", static_cast<unsigned char>(kept[*bad])),
               source, *bad);
+    } else if (std::optional<std::size_t> reference = findBadReference(kept)) {
+        error("bad-encoding", "this reference means no character", source, *reference);
     } else {
         return source;
     }
@@ -366,7 +379,10 @@ void Reader::include(ElementId mark) {
     std::string from = document.sources()[frames.back().source].directory;
     std::optional<ResolvedFile> found = resolver.resolve(href, from);
     if (!found) {
-        fail("missing-include", fmt::format("cannot find the included file '{}'", href));
+        std::string message = fmt::format("cannot find the included file '{}'", href);
+        Diagnostic& d = fail("missing-include", std::move(message));
+        if (href.starts_with('/') || href.find("..") != std::string_view::npos)
+            d.hint = "files are only taken from the document's own folder, from search paths, and from below these";
         return;
     }
     std::string file = normalPath(found->file);
@@ -427,11 +443,9 @@ Result<ElementId> read(Document& document, std::string_view fileName, std::strin
     std::size_t errors = diagnostics.errorCount();
     Reader reader{document,         resolver,        diagnostics, options, DocumentFiller(document),
                   document.names(), document.known()};
-    constexpr std::size_t kLarge = 1u << 20;
-    if (text.size() > kLarge) {  // worth a count, so that the arrays do not grow by doubling
-        auto tags = static_cast<std::size_t>(std::count(text.begin(), text.end(), '<'));
-        auto values = static_cast<std::size_t>(std::count(text.begin(), text.end(), '='));
-        reader.fill.reserve(std::min<std::size_t>(tags, options.maxElements) + 1, values + 1);
+    if (text.size() > kLarge) {  // so that the arrays do not grow by doubling
+        std::size_t most = options.maxElements;
+        reader.fill.reserve(std::min(countOf(text, '<'), most) + 1, std::min(countOf(text, '='), 2 * most) + 1);
     }
     std::string file(fileName);
     if (reader.openFile(normalPath(file), std::move(text), directoryOf(file), {})) reader.merge();

@@ -31,11 +31,11 @@ struct NoIncludes final : Resolver {
 
 struct ReadOptions {
     std::uint32_t maxIncludeDepth = 32;
-    std::uint32_t maxElements = 32u << 20;
+    std::uint32_t maxElements = 8u << 20;  // and twice as many tags and attributes
     std::uint32_t maxNesting = 1024;
     std::uint32_t maxAttributes = 10000;        // of one element
     std::size_t maxAttributeBytes = 16u << 20;  // of each attribute and text
-    std::size_t maxFileBytes = std::size_t(1) << 30;
+    std::size_t maxFileBytes = std::size_t(1) << 28;
 };
 
 // Reads a text into an empty document (as the constructor leaves it) and returns its root. Each xi:include stays as a

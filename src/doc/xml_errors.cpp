@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -174,6 +175,55 @@ std::optional<std::size_t> findBadByte(std::string_view text) {
         std::size_t n = characterLength(p + i, text.size() - i);
         if (n == 0) return i;
         i += n;
+    }
+    return {};
+}
+
+// The number of a reference whose digits start the text; none if it is no reference.
+static std::optional<std::uint32_t> referenceValue(std::string_view digits) {
+    bool hex = digits.starts_with('x');
+    std::uint32_t value = 0;
+    std::size_t first = hex ? 1 : 0, at = first;
+    for (; at < digits.size() && digits[at] != ';'; at++) {
+        char c = digits[at];
+        std::uint32_t digit = c >= '0' && c <= '9'          ? static_cast<std::uint32_t>(c - '0')
+                              : hex && c >= 'a' && c <= 'f' ? static_cast<std::uint32_t>(c - 'a' + 10)
+                              : hex && c >= 'A' && c <= 'F' ? static_cast<std::uint32_t>(c - 'A' + 10)
+                                                            : 16;
+        if (digit == 16) return {};
+        if (value <= 0x10FFFF) value = value * (hex ? 16 : 10) + digit;
+    }
+    if (at == digits.size() || at == first) return {};
+    return value;
+}
+
+// XML 1.0, production 2.
+static bool isXmlCharacter(std::uint32_t c) {
+    if (c < 0x20) return c == '\t' || c == '\n' || c == '\r';
+    return c < 0xD800 || (c >= 0xE000 && c <= 0x10FFFF && c != 0xFFFE && c != 0xFFFF);
+}
+
+// Where a comment or CDATA section that is open at `at` ends; `at` where none is.
+static std::size_t endOfText(std::string_view text, std::size_t at) {
+    for (auto [open, close] : {std::pair<std::string_view, std::string_view>{"<!--", "-->"}, {"<![CDATA[", "]]>"}}) {
+        std::size_t begin = text.rfind(open, at);
+        if (begin == std::string_view::npos) continue;
+        std::size_t end = text.find(close, begin);
+        if (end == std::string_view::npos || end > at) return end;
+    }
+    return at;
+}
+
+std::optional<std::size_t> findBadReference(std::string_view text) {
+    for (std::size_t at = text.find("&#"); at != std::string_view::npos; at = text.find("&#", at)) {
+        std::optional<std::uint32_t> value = referenceValue(text.substr(at + 2));
+        if (!value || isXmlCharacter(*value)) {
+            at += 2;
+            continue;
+        }
+        std::size_t end = endOfText(text, at);
+        if (end == at) return at;
+        at = end;
     }
     return {};
 }

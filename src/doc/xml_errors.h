@@ -21,4 +21,8 @@ std::optional<XmlProblem> findXmlProblem(std::string_view text);
 // The offset of the first byte that is no UTF-8 text (a NUL included), none if there is none.
 std::optional<std::size_t> findBadByte(std::string_view text);
 
+// The offset of the first character reference, as in "&#0;", to what XML does not take as a character; those in
+// comments and CDATA sections are text.
+std::optional<std::size_t> findBadReference(std::string_view text);
+
 }  // namespace shaderx::doc
