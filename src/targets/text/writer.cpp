@@ -19,7 +19,7 @@ std::string_view Writer::firstSentence(std::string_view sentences) {
 }
 
 void Writer::comment(std::string_view sentences, std::size_t width) {
-    auto isBlank = [](char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; };
+    auto isBlank = [](char c) { return (c >= 0 && c <= ' ') || c == 0x7f; };  // no sign that moves or deletes
     std::size_t column = 0;  // characters of the line so far, none before its first word
     // A comment must not go on in the next line.
     auto flush = [&](bool isLast) {
