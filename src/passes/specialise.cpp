@@ -15,7 +15,6 @@ using namespace ir;
 
 namespace {
 
-constexpr int kMaxDepth = 64;      // of calls in calls
 constexpr std::size_t kSmall = 5;  // operations up to which a function is not worth a call
 
 // What is known of an argument.
@@ -150,7 +149,9 @@ struct Specialiser {
     std::unordered_map<Name, Name> placed{};       // the module's copies of clones
     std::unordered_map<Name, const Key*> known{};  // of these: nothing is left to specialise in them
     std::deque<Frame> frames{};                    // by depth
+    ExpansionLimits limits{};
     std::size_t depth = 0;
+    std::size_t copied = 0;  // expressions of functions called
     bool ok = true;
 
     bool run(Name entry) {
@@ -288,7 +289,8 @@ struct Specialiser {
         frame.results.clear();
         const Clone* made = cloneOf(Name(e.payload));  // nothing is left to specialise in it
         const Function* callee = made ? &made->function : module.find(Name(e.payload));
-        if (!callee || depth >= kMaxDepth || !ok) {  // after an error the rest is not worth the work
+        if (callee) copied += callee->exprs.size();
+        if (!callee || depth >= limits.depth || copied > limits.expressions || !ok) {  // after an error the rest is not worth the work
             refuse(b, e, callee, frame.results);
             return frame.results;
         }
@@ -315,10 +317,16 @@ struct Specialiser {
     }
 
     void refuse(Builder& b, const Expr& e, const Function* callee, std::vector<ExprId>& results) {
-        std::string callName(module.names->text(Name(e.payload)));
-        if (ok)
-            diagnostics.error("bad-call", callee ? "calls nest too deeply in '" + callName + "'"
-                                                 : "there is no function '" + callName + "'");
+        std::string_view name = module.names->text(Name(e.payload));
+        if (ok && !callee)
+            diagnostics.error("bad-call", fmt::format("there is no function '{}'", name));
+        else if (ok && depth >= limits.depth)
+            diagnostics.error("limit", fmt::format("'{}' is used within more than {} nodes and functions that are "
+                                                   "made of others",
+                                                   name, limits.depth));
+        else if (ok)
+            diagnostics.error("limit", fmt::format("the nodes and functions in use expand to more than {} expressions",
+                                                   limits.expressions));
         ok = false;
         if (callee)
             for (const ResultValue& r : callee->results) results.push_back(b.null(r.type));
@@ -450,7 +458,8 @@ struct Specialiser {
     // for the same speed.
     void share(Name entry) {
         std::vector<Name> live = liveClones(entry);
-        if (live.size() < 2) return;
+        constexpr std::size_t kMostShared = 256;  // each is compared with each: beyond, the text may be longer
+        if (live.size() < 2 || live.size() > kMostShared) return;
         while (sharesTwo(live)) live = liveClones(entry);
         if (instead.empty()) return;
         live.push_back(entry);
@@ -633,8 +642,10 @@ bool Demand::make(ExprId id, int depth) {
 }  // namespace
 
 bool specialise(Module& module, Name entry, const std::unordered_set<Name>& baked, Specialisations& made,
-                Diagnostics& diagnostics) {
-    return Specialiser{module, baked, diagnostics, false, made}.run(entry);
+                Diagnostics& diagnostics, const ExpansionLimits& limits) {
+    Specialiser s{module, baked, diagnostics, false, made};
+    s.limits = limits;
+    return s.run(entry);
 }
 
 bool specialise(Module& module, Name entry, const std::unordered_set<Name>& baked, Diagnostics& diagnostics) {

@@ -1,6 +1,8 @@
 // Specialisation: what is constant folds, what cannot contribute goes, functions are cloned on constant arguments.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
@@ -41,6 +43,12 @@ struct Specialisations {
     }
 };
 
+// How far calls may expand before that is an error.
+struct ExpansionLimits {
+    std::uint32_t depth = 128;             // calls within calls
+    std::size_t expressions = 1u << 20;  // of the functions called, counted for each call
+};
+
 // Rebuilds the module's function `entry` and, as clones of their own, all functions that it calls:
 // - small functions, those marked inline and those with derivatives or closures expand where they are called;
 // - any other call goes to a clone made for its constant arguments and for vectors that repeat one scalar (so that an
@@ -48,10 +56,10 @@ struct Specialisations {
 //   numbers alone are one that takes the numbers;
 // - uniforms named in `baked` become constants of their default values;
 // - `known` becomes true where its operand is, else false.
-// Afterwards every function that the entry reaches belongs to the module. A function that is missing, or a nest of
-// calls too deep, is an error.
+// Afterwards every function that the entry reaches belongs to the module. A function that is missing, or an
+// expansion beyond the limits, is an error.
 bool specialise(ir::Module& module, Name entry, const std::unordered_set<Name>& baked, Specialisations& made,
-                Diagnostics& diagnostics);
+                Diagnostics& diagnostics, const ExpansionLimits& limits = {});
 bool specialise(ir::Module& module, Name entry, const std::unordered_set<Name>& baked, Diagnostics& diagnostics);
 
 // Expands in a function of a library what specialise would expand whatever the arguments are: done once, when the
