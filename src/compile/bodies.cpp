@@ -10,8 +10,9 @@ namespace shaderx {
 
 using namespace ir;
 
-NodeBodies::NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries)
-    : names_(names), definitions_(definitions), libraries_(std::move(libraries)), made_(names_) {
+NodeBodies::NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries,
+                       std::uint32_t maxDepth)
+    : names_(names), definitions_(definitions), libraries_(std::move(libraries)), maxDepth_(maxDepth), made_(names_) {
     for (Library* l : libraries_) {
         documents_.push_back(&l->document());
         made_.sources.push_back(l);
@@ -25,12 +26,18 @@ const LeafInfo* NodeBodies::findLeaf(Name name) {
 }
 
 Name NodeBodies::functionOf(doc::NodeDef def, Diagnostics& diagnostics) {
-    Name name = definitions_.row(def).name;
+    Name name = nameOf(def);
     if (made_.find(name)) return name;
-    if (!underWay_.insert(name).second) {
+    bool isTooDeep = underWay_.size() >= maxDepth_;
+    if (isTooDeep || !underWay_.insert(name).second) {
         doc::ElementRef element = definitions_.element(def);
-        Diagnostic& e = diagnostics.error(
-            "recursive-node", fmt::format("the implementation of '{}' uses the node itself", names_.text(name)));
+        Diagnostic& e =
+            isTooDeep
+                ? diagnostics.error("limit", fmt::format("'{}' is used within more than {} nodes that are made "
+                                                         "of others",
+                                                         names_.text(name), maxDepth_))
+                : diagnostics.error("recursive-node",
+                                    fmt::format("the implementation of '{}' uses the node itself", names_.text(name)));
         e.where = element.document->locate(element.id);
         e.path = element.document->path(element.id);
         return {};
@@ -56,7 +63,7 @@ bool NodeBodies::fromGraph(doc::NodeDef def, const doc::Implementation& implemen
     graph::Graph g;
     const doc::Document& d = *implementation.graph.document;
     if (!graph::build(d, implementation.graph.id, definitions_, g, diagnostics)) return false;
-    return graph::lower(g, definitions_, *this, def, definitions_.row(def).name, {}, made_, diagnostics);
+    return graph::lower(g, definitions_, *this, def, nameOf(def), {}, made_, diagnostics);
 }
 
 bool NodeBodies::fromSource(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics) {
@@ -79,9 +86,20 @@ const std::vector<sl::Signature>& NodeBodies::known() {
     return known_;
 }
 
+// The name of a nodedef's function: that of the nodedef, unless another library has a function of this name.
+Name NodeBodies::nameOf(doc::NodeDef def) const {
+    Name name = definitions_.row(def).name;
+    const doc::Document* home = definitions_.element(def).document;
+    for (Library* l : libraries_) {
+        if (&l->document() == home) break;
+        if (l->find(name)) return names_.intern(fmt::format("{}#{}", names_.text(name), def.layer));
+    }
+    return name;
+}
+
 Function NodeBodies::start(doc::NodeDef def) const {
     Function f;
-    f.name = definitions_.row(def).name;
+    f.name = nameOf(def);
     f.isInline = true;
     for (const doc::Port& p : definitions_.inputs(def)) f.params.push_back({p.name, typeNamed(names_.text(p.type))});
     return f;

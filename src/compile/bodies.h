@@ -16,7 +16,9 @@ namespace shaderx {
 // there already. What is made is kept for the next asking.
 class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
   public:
-    NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries);
+    // `maxDepth`: graphs that implement nodes in graphs that implement nodes.
+    NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries,
+               std::uint32_t maxDepth = 128);
 
     Name functionOf(doc::NodeDef def, Diagnostics& diagnostics) override;
     bool takeName(Name name) override { return uniformNames_.insert(name).second; }
@@ -41,11 +43,13 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     bool leaf(doc::NodeDef def, std::string_view name);
     bool attribute(doc::NodeDef def);
     ir::Function start(doc::NodeDef def) const;
+    Name nameOf(doc::NodeDef def) const;
     const std::vector<sl::Signature>& known();
 
     NameTable& names_;
     const doc::Definitions& definitions_;
     std::vector<Library*> libraries_;
+    std::uint32_t maxDepth_;
     std::vector<const doc::Document*> documents_;
     ir::Module made_;
     std::vector<sl::Signature> known_;  // of all libraries, once asked for
