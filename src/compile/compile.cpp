@@ -60,6 +60,16 @@ struct Compiler::State {
         if (builtin) all.push_back(builtin.get());
         return all;
     }
+    // False, with a message, for documents that cannot be compiled here because of how they were made.
+    bool accepts(const doc::Document& document, Diagnostics& diagnostics) const {
+        if (&document.names() != &names)
+            diagnostics.error("foreign-document", "the document belongs to another compiler");
+        else if (document.badEdits())
+            diagnostics.error("foreign-element", "the document was edited at elements that it does not have");
+        else
+            return true;
+        return false;
+    }
     doc::Definitions definitions(const doc::Document& document) const {
         doc::Definitions all;
         all.add(document);
@@ -91,6 +101,8 @@ static bool guarded(Diagnostics& diagnostics, std::string_view step, F&& run) {
         diagnostics.error("out-of-memory", fmt::format("{}: not enough memory", step));
     } catch (const std::exception& e) {
         diagnostics.add(Severity::Internal, "internal", fmt::format("{}: {}", step, e.what()));
+    } catch (...) {  // a caller's own, from a resolver or a sink
+        diagnostics.add(Severity::Internal, "internal", fmt::format("{}: an exception of unknown type", step));
     }
     return false;
 }
@@ -106,10 +118,10 @@ bool Compiler::addLibrary(std::vector<LibraryFile> files, Diagnostics& diagnosti
 }
 
 std::unique_ptr<doc::Document> Compiler::read(std::string_view file, std::string text, doc::Resolver& resolver,
-                                              Diagnostics& diagnostics) {
+                                              Diagnostics& diagnostics, const doc::ReadOptions& limits) {
     auto document = newDocument();
     bool ok = guarded(diagnostics, "read", [&] {
-        if (!doc::read(*document, file, std::move(text), resolver, diagnostics)) return false;
+        if (!doc::read(*document, file, std::move(text), resolver, diagnostics, limits)) return false;
         doc::upgrade(*document, diagnostics);
         return true;
     });
@@ -117,6 +129,7 @@ std::unique_ptr<doc::Document> Compiler::read(std::string_view file, std::string
 }
 
 bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics) {
+    if (!state_->accepts(document, diagnostics)) return false;
     return guarded(diagnostics, "check",
                    [&] { return doc::validate(document, state_->definitions(document), diagnostics); });
 }
@@ -159,6 +172,7 @@ struct Compilation {
     std::vector<graph::Authored> authored{};
     std::unordered_set<Name> baked{};  // uniforms that decide topology
     bool traces = false;               // whether expressions say from which node they come
+    passes::ExpansionLimits limits{};
     Name pixel = names.intern("@pixel"), vertex = names.intern("@vertex");
 
     bool run(Shader& shader) {
@@ -176,7 +190,7 @@ struct Compilation {
     // With all values of the document as uniforms, nothing is removed yet.
     bool findLobes(std::vector<passes::Lobe>& lobes) {
         traces = true;
-        if (!makeGraph() || !lower() || !passes::specialise(module, pixel, {}, made, diagnostics)) return false;
+        if (!makeGraph() || !lower() || !passes::specialise(module, pixel, {}, made, diagnostics, limits)) return false;
         lobes = passes::lobesOf(module, pixel);
         return true;
     }
@@ -230,6 +244,8 @@ struct Compilation {
         for (const Diagnostic& d : own.all()) diagnostics.add(d.severity, d.code, d.message) = d;
         if (!built) return false;
         if (graph.outputs.empty()) return refuse("no-output", "the element has no output to compute");
+        if (graph.outputs[0].type == ir::Type::Void && graph.outputs[0].source.kind != graph::Source::Kind::Node)
+            return refuse("no-output", "the output has neither a type nor a node that tells it");
         if (isEmptyMaterial()) return refuse("no-shader", "the material has no shader");
         graph.outputs.resize(1);
         if (wants(StageName::Graph)) options.dumps->dump(StageName::Graph, graph::print(graph, definitions));
@@ -268,15 +284,18 @@ struct Compilation {
         // Textures inside of nodes that graphs implement.
         const std::vector<ir::Uniform>& inside = bodies.made().uniforms;
         module.uniforms.insert(module.uniforms.end(), inside.begin(), inside.end());
-        if (ok) dump(StageName::Lower);
-        return ok;
+        if (!ok) return false;
+        // What a long document makes of its own nodes is no explosion.
+        limits = {options.maxDepth, options.maxExpressions + 32 * module.findOwn(pixel)->exprs.size()};
+        dump(StageName::Lower);
+        return true;
     }
 
     bool specialise() {
-        bool ok = passes::specialise(module, pixel, {}, made, diagnostics);
+        bool ok = passes::specialise(module, pixel, {}, made, diagnostics, limits);
         if (ok && options.interface == Interface::Live) {
             baked = passes::topologyUniforms(module, *module.findOwn(pixel));
-            ok = baked.empty() || passes::specialise(module, pixel, baked, made, diagnostics);
+            ok = baked.empty() || passes::specialise(module, pixel, baked, made, diagnostics, limits);
         }
         if (!ok) return false;
         passes::prune(module, std::array{pixel});
@@ -297,7 +316,7 @@ struct Compilation {
             passes::expandToLongWork(module, pixel);
             passes::gather(module, pixel);
         }
-        if (!passes::specialise(module, pixel, {}, made, diagnostics)) return false;
+        if (!passes::specialise(module, pixel, {}, made, diagnostics, limits)) return false;
         passes::expandCalledOnce(module, pixel);
         passes::prune(module, std::array{pixel});
         if (options.flipV) passes::flipTextures(module);
@@ -370,20 +389,27 @@ struct Compiler::Batch {
 template <class Run>
 bool Compiler::compile(Batch& batch, const doc::Document& document, doc::ElementId element,
                        const GenerateOptions& options, Diagnostics& diagnostics, Run&& run) {
+    if (!state_->accepts(document, diagnostics)) return false;
+    if (!document.has(element)) {
+        diagnostics.error("foreign-element", "the document has no such element");
+        return false;
+    }
     auto& [definitions, bodies, made, finished, texts, isSeveral] = batch;
-    return guarded(diagnostics, fmt::format("generating '{}'", document.path(element)), [&] {
+    Diagnostics own;
+    bool ok = guarded(own, fmt::format("generating '{}'", document.path(element)), [&] {
         if (!definitions) definitions = state_->definitions(document);
         // Uniforms inside of bodies have taken names that another element may want.
         if (bodies && !bodies->made().uniforms.empty()) {
             bodies.reset();
             made.clear();
         }
-        if (!bodies) bodies.emplace(state_->names, *definitions, state_->libraries()).addDocument(document);
+        if (!bodies)
+            bodies.emplace(state_->names, *definitions, state_->libraries(), options.maxDepth).addDocument(document);
         bodies->forgetNames();
         Compilation c{document,
                       element,
                       options,
-                      diagnostics,
+                      own,
                       state_->names,
                       *definitions,
                       *bodies,
@@ -397,6 +423,14 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
         for (Library* l : state_->libraries()) c.module.sources.push_back(l);
         return run(c);
     });
+    for (const Diagnostic& d : own.all()) {
+        Diagnostic& told = diagnostics.add(d.severity, d.code, d.message);
+        told = d;
+        if (!told.where.file.empty() || told.where.line) continue;
+        told.where = document.locate(element);  // passes know no document
+        told.path = document.path(element);
+    }
+    return ok;
 }
 
 void Compiler::generate(const doc::Document& document, std::span<const doc::ElementId> elements,

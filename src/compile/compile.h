@@ -69,6 +69,9 @@ struct GenerateOptions {
     int bindingBase = -1;       // of blocks and samplers, which the text numbers from here on; below 0 it numbers none
     std::string_view unit = "meter";  // what one unit of distance is in the scene, as a <unitdef> calls it
     DumpSink* dumps = nullptr;
+    // Limits; beyond them generating is an error.
+    std::uint32_t maxDepth = 128;           // nodes and functions made of others, within each other
+    std::size_t maxExpressions = 1u << 20;  // that these expand to, beside those of the document's own nodes
 };
 
 // What a user interface shows of a value: texts as the document or the nodedef writes them, empty where it says
@@ -175,7 +178,7 @@ class Compiler {
     std::unique_ptr<doc::Document> newDocument();
     // Reads a document and what it includes, and brings it to the current version. Null after errors.
     std::unique_ptr<doc::Document> read(std::string_view file, std::string text, doc::Resolver& resolver,
-                                        Diagnostics& diagnostics);
+                                        Diagnostics& diagnostics, const doc::ReadOptions& limits = {});
     // Reports every mistake of a document.
     bool validate(const doc::Document& document, Diagnostics& diagnostics);
     // What can be rendered: materials, or the outputs of a document without any.

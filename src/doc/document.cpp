@@ -213,8 +213,15 @@ ElementId Document::find(std::string_view path) const {
     return {};
 }
 
-ElementId Document::append(ElementId parent, std::string_view category, std::string_view name) {
+bool Document::mayEdit(ElementId id) {
     ensure(editable(), "a library's document is read only");
+    bool known = has(id);
+    if (!known) badEdits_++;
+    return known;
+}
+
+ElementId Document::append(ElementId parent, std::string_view category, std::string_view name) {
+    if (!mayEdit(parent)) return {};
     ElementId id = addElement(names_.intern(category), parent);
     if (!name.empty()) set(id, known_.name, names_.intern(name));
     return id;
@@ -225,7 +232,7 @@ void Document::set(ElementId id, std::string_view attr, std::string_view value) 
 }
 
 void Document::set(ElementId id, Name attr, Name value) {
-    ensure(editable(), "a library's document is read only");
+    if (!mayEdit(id)) return;
     Element& e = ownElements_[id.index];
     bool found = false;
     for (std::uint32_t i = 0; i < e.attributeCount && !found; i++)
@@ -241,7 +248,7 @@ void Document::set(ElementId id, Name attr, Name value) {
 }
 
 void Document::unset(ElementId id, Name attr) {
-    ensure(editable(), "a library's document is read only");
+    if (!mayEdit(id)) return;
     Element& e = ownElements_[id.index];
     auto begin = ownAttributes_.begin() + e.firstAttribute, end = begin + e.attributeCount;
     auto at = std::find_if(begin, end, [&](const Attribute& a) { return a.name == attr; });
@@ -252,21 +259,24 @@ void Document::unset(ElementId id, Name attr) {
 }
 
 void Document::setCategory(ElementId id, std::string_view category) {
-    ensure(editable(), "a library's document is read only");
+    if (!mayEdit(id)) return;
     ownElements_[id.index].category = names_.intern(category);
 }
 
 void Document::setOrigin(ElementId id, ElementId from) {
-    ensure(editable(), "a library's document is read only");
+    if (!mayEdit(id) || !mayEdit(from)) return;
     ownElements_[id.index].source = ownElements_[from.index].source;
     ownElements_[id.index].offset = ownElements_[from.index].offset;
 }
 
 void Document::remove(ElementId id) {
-    ensure(editable() && id && id != root(), "only children can be removed");
+    if (!mayEdit(id)) return;
     Element& e = ownElements_[id.index];
     ElementId parent = e.parent, before;
-    if (!parent) return;
+    if (!parent) {  // the root, or a comment beside it
+        badEdits_++;
+        return;
+    }
     for (ElementId c = ownElements_[parent.index].firstChild; c != id; c = ownElements_[c.index].next) before = c;
     (before ? ownElements_[before.index].next : ownElements_[parent.index].firstChild) = e.next;
     if (lastChild_[parent.index] == id) lastChild_[parent.index] = before;
@@ -283,6 +293,7 @@ void Document::remove(ElementId id) {
 }
 
 std::string Document::path(ElementId id) const {
+    if (!has(id)) return {};
     std::vector<std::string_view> parts;
     for (; id && elements_[id.index].parent; id = elements_[id.index].parent)
         if (elements_[id.index].name) parts.push_back(text(elements_[id.index].name));
@@ -334,7 +345,7 @@ static std::size_t findAttribute(std::string_view text, std::size_t offset, std:
 }
 
 Location Document::locate(ElementId id, Name attr) const {
-    if (!id) return {};
+    if (!has(id)) return {};
     const Element& e = elements_[id.index];
     if (e.source >= sources_.size()) return {};
     std::size_t offset = e.offset;

@@ -84,6 +84,8 @@ class Document {
     ElementId prologue() const { return prologue_; }
     const Element& operator[](ElementId id) const { return elements_[id.index]; }
     std::size_t size() const { return elements_.size(); }
+    // True for the elements of this document. All that takes an element wants one of these; only editing asks.
+    bool has(ElementId id) const { return id.index < elements_.size() && elements_[id.index].category; }
     std::span<const Element> elements() const { return elements_; }
     std::span<const Attribute> allAttributes() const { return attributes_; }
     std::span<const Attribute> attributes(ElementId id) const {
@@ -114,7 +116,8 @@ class Document {
     // The element at "graph/node" or "node", none where there is none. An empty path is none.
     ElementId find(std::string_view path) const;
 
-    // Editing; an internal error on a view. New children go last; set() on "name" renames.
+    // Editing; an internal error on a view. New children go last; set() on "name" renames. Editing an element that the
+    // document does not have changes nothing, but is counted: such a document is not what its maker meant.
     ElementId append(ElementId parent, std::string_view category, std::string_view name = {});
     void set(ElementId id, std::string_view attr, std::string_view value);
     void set(ElementId id, Name attr, Name value);
@@ -125,6 +128,7 @@ class Document {
     void setOrigin(ElementId id, ElementId from);
     // Takes the element with all below it out of the document. Not the root.
     void remove(ElementId id);
+    std::size_t badEdits() const { return badEdits_; }
 
     // The names from below the root to the element: "NG_wood/mix1". The root's path is empty.
     std::string path(ElementId id) const;
@@ -141,6 +145,7 @@ class Document {
     friend class DocumentFiller;
 
     bool editable() const { return elements_.data() == ownElements_.data(); }
+    bool mayEdit(ElementId id);
     ElementId addElement(Name category, ElementId parent);
     void addAttribute(ElementId id, Name attr, Name value);
     void refresh();
@@ -157,6 +162,7 @@ class Document {
     std::vector<ElementId> lastChild_;
     std::vector<Source> sources_;
     ElementId prologue_;
+    std::size_t badEdits_ = 0;
     bool hasNamespaces_ = false;
 
     // Children by (parent, name), for parents with many children, filled when first asked for.

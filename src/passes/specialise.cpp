@@ -290,7 +290,8 @@ struct Specialiser {
         const Clone* made = cloneOf(Name(e.payload));  // nothing is left to specialise in it
         const Function* callee = made ? &made->function : module.find(Name(e.payload));
         if (callee) copied += callee->exprs.size();
-        if (!callee || depth >= limits.depth || copied > limits.expressions || !ok) {  // after an error the rest is not worth the work
+        if (!callee || depth >= limits.depth || copied > limits.expressions ||
+            !ok) {  // after an error the rest is not worth the work
             refuse(b, e, callee, frame.results);
             return frame.results;
         }

@@ -45,7 +45,7 @@ struct Specialisations {
 
 // How far calls may expand before that is an error.
 struct ExpansionLimits {
-    std::uint32_t depth = 128;             // calls within calls
+    std::uint32_t depth = 128;           // calls within calls
     std::size_t expressions = 1u << 20;  // of the functions called, counted for each call
 };
 
