@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include <unistd.h>
 
 #include "apps/cli/files.h"
+#include "apps/cli/limits.h"
 #include "compile/compile.h"
 #include "compile/inspect.h"
 #include "doc/file_resolver.h"
@@ -27,9 +29,10 @@ struct PrintDump final : DumpSink {
     void dump(StageName, const std::string& text) override { std::fputs(text.c_str(), stdout); }
 };
 
-// A diagnostic's first line, its kind in colour on a terminal.
+// A diagnostic, its kind in colour on a terminal.
 void print(const Diagnostic& d) {
     std::string text = format(d);
+    if (d.code == "limit" && d.hint.empty()) text += "  hint: --limit sets another one\n";
     static const bool colour = isatty(2) && !std::getenv("NO_COLOR");
     if (colour) {
         const char* word = d.severity == Severity::Warning ? "warning:" : "error:";
@@ -46,7 +49,8 @@ struct Session {
     const Options& options;
     Compiler compiler{builtinLibrary()};
     PrintDump dumps{};
-    bool failed = false, bug = false;
+    Limits limits{};
+    bool failed = false, bug = false, badUsage = false;
 
     // Prints what was found; what the step returned and errors decide the exit code.
     bool report(const Diagnostics& diagnostics, const std::string& replay = {}) {
@@ -59,10 +63,15 @@ struct Session {
         return !diagnostics.hasErrors();
     }
 
-    int exitCode() const { return bug ? kOurBug : failed ? kInputErrors : kDone; }
+    int exitCode() const { return bug ? kOurBug : badUsage ? kBadUsage : failed ? kInputErrors : kDone; }
 
     bool start() {
         Diagnostics diagnostics;
+        if (std::string problem = limits.set(options.limits); !problem.empty()) {
+            std::fprintf(stderr, "shaderx: %s\n", problem.c_str());
+            badUsage = true;
+            return false;
+        }
         for (const std::string& folder : options.libraries) {
             std::vector<LibraryFile> files;
             if (readLibrary(folder, files, diagnostics)) compiler.addLibrary(std::move(files), diagnostics);
@@ -70,6 +79,7 @@ struct Session {
         dumps.active = !options.dump.empty();
         if (dumps.active && !stageNamed(options.dump, dumps.stage)) {
             std::fprintf(stderr, "shaderx: there is no stage '%s'\n", options.dump.c_str());
+            badUsage = true;
             return false;
         }
         return report(diagnostics);
@@ -79,8 +89,9 @@ struct Session {
         Diagnostics diagnostics;
         std::string text;
         std::unique_ptr<doc::Document> document;
-        doc::FileResolver resolver(options.paths);
-        if (readInput(file, text, diagnostics)) document = compiler.read(file, std::move(text), resolver, diagnostics);
+        doc::FileResolver resolver(options.paths, limits.read.maxFileBytes);
+        if (readInput(file, text, diagnostics, limits.read.maxFileBytes))
+            document = compiler.read(file, std::move(text), resolver, diagnostics, limits.read);
         report(diagnostics, "validate " + file);
         return document;
     }
@@ -106,6 +117,8 @@ struct Session {
         GenerateOptions how;
         interfaceNamed(options.interface, how.interface);
         how.dumps = &dumps;
+        how.maxDepth = limits.depth;
+        how.maxExpressions = limits.expressions;
         if (options.light != "fis")
             how.environment = options.light == "none" ? EnvironmentLight::None : EnvironmentLight::Prefiltered;
         how.flipV = options.flipV;
@@ -135,11 +148,15 @@ struct Session {
             writeFile("-", shader.vertex + "\n" + shader.pixel, diagnostics);
         } else {
             std::string base = (std::filesystem::path(options.out) / stem).string();
-            bool ok = writeFile(base + ".vert", shader.vertex, diagnostics) &&
-                      writeFile(base + ".frag", shader.pixel, diagnostics) &&
-                      writeFile(base + ".json", shader.reflection(), diagnostics);
-            if (!ok)
-                for (const char* end : {".vert", ".frag", ".json"}) std::remove((base + end).c_str());
+            const std::string reflection = shader.reflection();
+            const std::pair<const char*, std::string_view> files[] = {
+                {".vert", shader.vertex}, {".frag", shader.pixel}, {".json", reflection}};
+            std::size_t written = 0;
+            while (written < std::size(files) &&
+                   writeFile(base + files[written].first, files[written].second, diagnostics))
+                written++;
+            for (std::size_t i = 0; written < std::size(files) && i < written; i++)
+                std::remove((base + files[i].first).c_str());
         }
         report(diagnostics);
     }
@@ -157,7 +174,7 @@ struct Work {
 
 int generate(const Options& options) {
     Session s{options};
-    if (!s.start()) return s.failed || s.bug ? s.exitCode() : kBadUsage;
+    if (!s.start()) return s.exitCode();
     bool writes = options.dump.empty();
     if (writes && options.out != "-") {
         Diagnostics diagnostics;

@@ -9,7 +9,7 @@ namespace shaderx::cli {
 enum ExitCode { kDone = 0, kInputErrors = 1, kBadUsage = 2, kOurBug = 3 };
 
 struct Options {
-    std::vector<std::string> files, paths, libraries;
+    std::vector<std::string> files, paths, libraries, limits;
     std::string out = ".", target = "glsl", element, interface = "live", dump;
     // of the shaders that are made
     std::string light = "fis", unit = "meter";

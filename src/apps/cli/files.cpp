@@ -13,15 +13,22 @@ namespace shaderx::cli {
 
 namespace fs = std::filesystem;
 
-bool readInput(const std::string& file, std::string& text, Diagnostics& diagnostics) {
-    if (file == "-") {
+bool readInput(const std::string& file, std::string& text, Diagnostics& diagnostics, std::size_t maxBytes) {
+    if (file == "-") {  // one that goes on for ever is cut; the reader says that it is too long
         char buffer[65536];
-        for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, stdin)) > 0;) text.append(buffer, n);
+        for (std::size_t n; text.size() <= maxBytes && (n = std::fread(buffer, 1, sizeof buffer, stdin)) > 0;)
+            text.append(buffer, n);
         return true;
     }
-    std::optional<std::string> read = doc::readFile(file);
+    std::optional<std::string> read = doc::readFile(file, maxBytes);
     if (!read) {
-        diagnostics.error("cannot-read", "cannot read this file").where.file = file;
+        std::error_code unknown;
+        std::uintmax_t size = fs::is_regular_file(file, unknown) ? fs::file_size(file, unknown) : 0;
+        bool tooLarge = !unknown && size > maxBytes;
+        Diagnostic& e =
+            tooLarge ? diagnostics.error("limit", "the file is larger than " + std::to_string(maxBytes) + " bytes")
+                     : diagnostics.error("cannot-read", "cannot read this file");
+        e.where.file = file;
         return false;
     }
     text = std::move(*read);

@@ -7,11 +7,13 @@
 
 #include "base/diagnostics.h"
 #include "compile/library.h"
+#include "doc/read.h"
 
 namespace shaderx::cli {
 
 // A whole plain file, or standard input for "-". Reports where it can't.
-bool readInput(const std::string& file, std::string& text, Diagnostics& diagnostics);
+bool readInput(const std::string& file, std::string& text, Diagnostics& diagnostics,
+               std::size_t maxBytes = doc::ReadOptions().maxFileBytes);
 
 // Writes beside the file and renames, so that there is never half a file. "-" is standard output.
 bool writeFile(const std::string& file, std::string_view text, Diagnostics& diagnostics);

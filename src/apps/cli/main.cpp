@@ -15,6 +15,8 @@ void common(CLI::App& command, Options& o) {
         ->allow_extra_args(false);
     command.add_option("--library", o.libraries, "a folder with more node definitions; may be repeated")
         ->allow_extra_args(false);
+    command.add_option("--limit", o.limits, "NAME=NUMBER: a limit of what is taken in; docs/robustness.md lists them")
+        ->allow_extra_args(false);
 }
 
 void shading(CLI::App& command, Options& o) {
