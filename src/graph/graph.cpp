@@ -94,7 +94,7 @@ struct GraphBuilder {
     std::array<std::uint32_t, 64> shapeAt{};  // by category and type: shape + 1
     std::vector<doc::GivenInput> given{};     // of the node at hand, and their elements
     std::vector<ElementId> givenElements{};
-    bool hasOthers = false;  // has it children by name that are no inputs?
+    bool hasOthers = false;                    // has it children by name that are no inputs?
     std::unordered_set<ElementId> circular{};  // ports that lead in a circle
     std::unordered_map<ElementId, ElementId>
         shortcuts{};  // from ports within long rows of ports to the last of the row

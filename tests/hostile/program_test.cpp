@@ -180,7 +180,28 @@ TEST_F(Limits, AreOptions) {
     put("c.mtlx", wrapped("<standard_surface name='s' type='surfaceshader'/><surfacematerial name='m' type='material'>"
                           "<input name='surfaceshader' type='surfaceshader' nodename='s'/></surfacematerial>"));
     expectRefused(generate("c.mtlx --limit depth=1"), "[limit]", "depth");
-    expectRefused(generate("c.mtlx --limit expressions=1"), "[limit]", "expressions");
+    // Each graph uses the one below twice, with other values: two to the tenth of the lowest.
+    std::string graphs;
+    for (int i = 0; i <= 10; i++) {
+        const std::string n = std::to_string(i), below = i ? "g" + std::to_string(i - 1) : "sin";
+        const std::string input = i ? "a" : "in";
+        graphs += "<nodedef name='ND_g" + n + "' node='g" + n + "'><input name='a' type='float' value='0.5'/>" +
+                  "<output name='out' type='float'/></nodedef><nodegraph name='NG_g" + n + "' nodedef='ND_g" + n + "'>";
+        for (const char* side : {"x", "y"})
+            graphs += std::string("<multiply name='m") + side + "' type='float'><input name='in1' type='float' " +
+                      "interfacename='a'/><input name='in2' type='float' value='0." + (side[0] == 'x' ? "3" : "7") +
+                      "'/></multiply>" + "<" + below + " name='" + side + "' type='float'><input name='" + input +
+                      "' type='float' nodename='m" + side + "'/></" + below + ">";
+        graphs +=
+            "<add name='s' type='float'><input name='in1' type='float' nodename='x'/>"
+            "<input name='in2' type='float' nodename='y'/></add><output name='out' type='float' nodename='s'/>"
+            "</nodegraph>";
+    }
+    put("d.mtlx", wrapped(graphs + "<texcoord name='t' type='vector2'/><extract name='e' type='float'>"
+                                   "<input name='in' type='vector2' nodename='t'/></extract>"
+                                   "<g10 name='g' type='float'><input name='a' type='float' nodename='e'/></g10>"
+                                   "<output name='o' type='float' nodename='g'/>"));
+    expectRefused(generate("d.mtlx --limit expressions=1"), "[limit]", "expressions");
     EXPECT_EQ(generate("c.mtlx --limit depth=60 --limit expressions=100000").exitCode, 0);
     for (const char* wrong : {"", "elements", "elements=", "elements=x", "elements=-1", "nothing=1", "elements=1e9",
                               "elements=99999999999", "elements=99999999999999999999"})
@@ -249,7 +270,9 @@ TEST_F(Sl, DiamondsAndTowersOfCalls) {
     Ran diamond = with(twice + "float f(float a) { return g30(a); }");
     EXPECT_LE(diamond.exitCode, 1) << diamond.errors;
     EXPECT_TRUE(diamond.exitCode == 0 || contains(diamond.errors, "[limit]")) << diamond.errors;
-    expectRefused(with(once + "float f(float a) { return g5000(a); }"), "error", "a tower");
+    Ran tower = with(once + "float f(float a) { return g5000(a); }");
+    EXPECT_LE(tower.exitCode, 1) << tower.errors;
+    EXPECT_TRUE(tower.exitCode == 0 || contains(tower.errors, "[limit]")) << tower.errors;
     // Each level with other constants: as many clones as there are ways.
     std::string clones = "float g0(float a, float b) { return sin(a * b) + cos(a + b) * sin(b) + a * a * b + 3.0; }\n";
     for (int i = 1; i <= 30; i++) {
