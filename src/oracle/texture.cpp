@@ -142,16 +142,17 @@ Colour Texture::closest(const Level& level, float u, float v) const {
 float Texture::levelOf(const float (&ddx)[2], const float (&ddy)[2]) const {
     const float w = static_cast<float>(width()), h = static_cast<float>(height());
     const auto squared = [&](const float(&d)[2]) { return d[0] * w * d[0] * w + d[1] * h * d[1] * h; };
-    const float largest = std::max(squared(ddx), squared(ddy));
+    const float x = squared(ddx), y = squared(ddy), largest = std::max(x, y);
+    if (!std::isfinite(x + y)) return 1000.0f;  // the coarsest, whatever is not a number
     int exponent = 0;
     const float mantissa = std::frexp(largest, &exponent);  // 0.5 … 1
-    if (!(largest > 0) || !std::isfinite(largest)) return largest > 0 ? 1000.0f : -1000.0f;
+    if (!(largest > 0)) return -1000.0f;
     return 0.5f * (static_cast<float>(exponent) + 2 * mantissa - 2);
 }
 
 Colour Texture::at(float u, float v, float level) const {
     const int last = levels() - 1;
-    level = level == level ? std::clamp(level, 0.0f, static_cast<float>(last)) : 0.0f;
+    level = level == level ? std::clamp(level, 0.0f, static_cast<float>(last)) : static_cast<float>(last);
     const auto number = [](int i) { return static_cast<std::size_t>(i); };
     if (sampling_.closest) return closest(levels_[number(static_cast<int>(std::floor(level + 0.5f)))], u, v);
     const int first = static_cast<int>(level), second = std::min(first + 1, last);
