@@ -457,7 +457,8 @@ struct Simplifier {
             case Op::ClosureMix:
                 if (isAll(x[2], 0) || x[0] == x[1]) return x[0];
                 if (isAll(x[2], 1)) return x[1];
-                if (type == Type::SurfaceShader) return {};
+                // How much light passes a BSDF is mixed too, and scaling keeps it.
+                if (type == Type::SurfaceShader || type == Type::BSDF) return {};
                 if (isNull(x[0])) return b.emit(Op::ClosureScale, type, {x[1], x[2]});
                 if (isNull(x[1])) return b.emit(Op::ClosureScale, type, {x[0], b.op(Op::Sub, {b.number(1), x[2]})});
                 return {};
@@ -467,7 +468,8 @@ struct Simplifier {
                 return {};
             case Op::ClosureScale:
                 if (isNull(x[0]) || isAll(x[1], 1)) return x[0];
-                if (isAll(x[1], 0)) return b.null(type);
+                // A BSDF without light of its own still stands before what lies below it.
+                if (isAll(x[1], 0) && type != Type::BSDF) return b.null(type);
                 return {};
             case Op::ClosureLayer:
                 // Nothing over a volume is nothing that a surface has.
