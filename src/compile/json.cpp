@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "base/numbers.h"
+
 namespace shaderx {
 
 void JsonWriter::begin() {
@@ -57,7 +59,7 @@ void JsonWriter::number(float value) {
     if (!std::isfinite(value)) return null();
     if (std::abs(value) < 1e6f && value == std::trunc(value)) return integer(static_cast<std::int64_t>(value));
     begin();
-    fmt::format_to(std::back_inserter(out_), "{}", value);
+    out_ += formatFloat(value);
 }
 
 // Bytes of the UTF-8 character at the start of a text, 0 where it is none (RFC 3629, section 4).

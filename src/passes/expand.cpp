@@ -57,12 +57,14 @@ struct Expander {
     std::vector<ExprId> expand(const Function& from, Builder& b, std::span<const ExprId> arguments) {
         Copy copy(from, b);
         std::unordered_map<std::uint32_t, Expanded> calls;  // by source expression
+        std::vector<char> isSame(from.exprs.size());        // nothing that was expanded is in it
         for (std::uint32_t i = 0; i < from.exprs.size(); i++) {
             ExprId id(i);
             const Expr& e = from.exprs[i];
             const Function* callee = e.op == Op::Call ? module.find(Name(e.payload)) : nullptr;
             if (e.op == Op::Param) {
                 copy.set(id, arguments[e.payload]);
+                isSame[i] = depth == 0;
             } else if (callee && depth < kMaxDepth && isWanted(*callee)) {
                 auto operands = copy.operands(id);
                 std::vector<ExprId> given(operands.begin(), operands.end());
@@ -78,6 +80,9 @@ struct Expander {
             } else if (e.op == Op::Known) {
                 ExprId x = copy[from.operand(id, 0)];
                 copy.set(id, b.function().isConstant(x) ? x : b.boolean(false));
+            } else if (depth == 0 && areAll(from.operandsOf(e), isSame)) {
+                copy.raw(id);  // as simple as it was
+                isSame[i] = true;
             } else {
                 copy.one(id);
             }
@@ -85,6 +90,10 @@ struct Expander {
         std::vector<ExprId> results;
         for (const ResultValue& r : from.results) results.push_back(copy[r.value]);
         return results;
+    }
+
+    static bool areAll(std::span<const ExprId> operands, const std::vector<char>& truths) {
+        return std::all_of(operands.begin(), operands.end(), [&](ExprId o) { return truths[o.index] != 0; });
     }
 
     // A name that the caller gives to a result goes before the one that the value has inside the function called,

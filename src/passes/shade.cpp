@@ -37,6 +37,9 @@ struct Shader {
     std::vector<ExprId> throughput = std::vector<ExprId>(from.exprs.size());
     std::map<std::uint32_t, LeafLight> leaves{};
     std::vector<ExprId> shares = std::vector<ExprId>(from.exprs.size());  // see share
+    // What leaves' functions and nodes call their inputs.
+    Name weight = name("weight"), normalName = name("normal"), tangent = name("tangent");
+    Name V = name("V"), N = name("N"), X = name("X");
     ExprId view{};
     bool ok = true, warnedVolume = false;
 
@@ -249,15 +252,14 @@ struct Shader {
     }
 
     // The leaf's input of a name, or none.
-    ExprId input(ExprId id, std::string_view text) {
+    ExprId input(ExprId id, Name wanted) {
         const LeafInfo* info = module.leaf(Name(from[id].payload));
-        Name wanted = name(text);
         for (std::size_t k = 0; info && k < info->params.size(); k++)
             if (info->params[k].name == wanted) return copy[from.operand(id, k)];
         return {};
     }
     ExprId weightOf(ExprId id) {
-        ExprId w = input(id, "weight");
+        ExprId w = input(id, weight);
         return w ? w : one();
     }
 
@@ -266,30 +268,29 @@ struct Shader {
             ExprId d = b.op(Op::Sub, {b.convert(b.context(Context::ViewPosition), Type::Vector3),
                                       b.convert(b.context(Context::PositionWorld), Type::Vector3)});
             view = b.op(Op::Normalize, {d});
-            b.hint(view, name("V"));
+            b.hint(view, V);
         }
         return view;
     }
 
     // The value for a parameter of a leaf's function.
     ExprId bound(ExprId id, const Param& p) {
-        std::string_view text = module.names->text(p.name);
         ExprId value;
-        if (text == "V") return toViewer();
-        if (text == "N") {
-            ExprId normal = input(id, "normal");
+        if (p.name == V) return toViewer();
+        if (p.name == N) {
+            ExprId normal = input(id, normalName);
             if (!normal) normal = b.op(Op::Normalize, {b.context(Context::NormalWorld)});
             value = b.op(Op::Faceforward, {normal, b.op(Op::Neg, {toViewer()}), normal});
-            if (Name old = b.function().hints[normal.index]; !old || old == name("N")) b.rename(normal, name("normal"));
-            b.rename(value, name("N"));
+            if (Name old = b.function().hints[normal.index]; !old || old == N) b.rename(normal, normalName);
+            b.rename(value, N);
             return value;
         }
-        if (text == "X") {
-            value = input(id, "tangent");
+        if (p.name == X) {
+            value = input(id, tangent);
             if (!value) value = b.op(Op::Normalize, {b.context(Context::TangentWorld)});
             return value;
         }
-        value = input(id, text);
+        value = input(id, p.name);
         return value && b.type(value) != p.type ? b.convert(value, p.type) : value;
     }
 

@@ -15,7 +15,9 @@ using namespace ir;
 
 namespace {
 
-constexpr std::size_t kSmall = 5;  // operations up to which a function is not worth a call
+constexpr std::uint32_t kNameless = 0x80000000u;  // names from here on have no text: those of clones
+constexpr std::uint32_t kOwn = 0x40000000u;       // after these, of clones of the module's own functions
+constexpr std::size_t kSmall = 5;                 // operations up to which a function is not worth a call
 
 // What is known of an argument.
 enum class Shape : std::uint32_t { Any, Constant, Filled };
@@ -170,8 +172,9 @@ struct Specialiser {
 
     // The clone of a name, none if the name is no clone's.
     const Clone* cloneOf(Name name) const {
-        const Clone* found = own.find(name);
-        return found ? found : shared.find(name);
+        if (!name || name.index < kNameless) return nullptr;
+        const std::uint32_t i = name.index - kNameless;
+        return i < kOwn ? shared.named[i] : own.named[i - kOwn];
     }
 
     // Gives the module a copy of every clone that a function of it calls.
@@ -184,7 +187,7 @@ struct Specialiser {
     Name placeOne(const Clone& clone) {
         Name& name = placed[clone.function.name];
         if (name) return name;
-        std::string_view stem = module.names->text(clone.function.name);
+        std::string_view stem = module.names->text(clone.stem);
         stem = stem.substr(0, stem.find('@'));
         int number = 0;
         Name fresh;
@@ -393,13 +396,11 @@ struct Specialiser {
         made.key = &found->first;
         make(callee, found->first, frame, made.function);
         if (isSmall(made.function)) return made;  // is expanded where it is called and needs no name
-        std::string_view stem = module.names->text(callee.name);
-        stem = stem.substr(0, stem.find('@'));
-        Name name;
-        do name = module.names->intern(fmt::format("{}@@{}", stem, all.next++));
-        while (cloneOf(name));
-        made.function.name = name;
-        all.byName[name] = &made;
+        // A name that no text has; the module's copy gets one that does.
+        const std::uint32_t first = &all == &own ? kNameless + kOwn : kNameless;
+        made.function.name = Name(first + static_cast<std::uint32_t>(all.named.size()));
+        made.stem = callee.name;
+        all.named.push_back(&made);
         return made;
     }
 

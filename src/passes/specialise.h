@@ -27,18 +27,14 @@ struct Specialisations {
     };
     struct Clone {
         ir::Function function;  // without a name if it is small enough to be expanded
+        Name stem;              // of the function that it is a clone of
         const Key* key = nullptr;
     };
     std::unordered_map<Key, Clone, KeyHash> byKey;
-    std::unordered_map<Name, const Clone*> byName;
-    int next = 0;
+    std::vector<const Clone*> named;
 
-    const Clone* find(Name name) const {
-        auto found = byName.find(name);
-        return found == byName.end() ? nullptr : found->second;
-    }
     void clear() {
-        byName.clear();
+        named.clear();
         byKey.clear();
     }
 };

@@ -26,6 +26,8 @@ static std::string number(Scalar scalar, std::uint32_t word) {
             const float value = std::bit_cast<float>(word);
             if (std::isnan(value)) return "uintBitsToFloat(0x7fc00000u)";
             if (std::isinf(value)) return value > 0 ? "uintBitsToFloat(0x7f800000u)" : "uintBitsToFloat(0xff800000u)";
+            if (value == std::trunc(value) && std::abs(value) < 1e6f && word != 0x80000000u)
+                return std::to_string(static_cast<int>(value)) + ".0";
             std::string s = formatFloat(value);
             if (s.find_first_of(".e") == std::string::npos) s += ".0";
             return s;
