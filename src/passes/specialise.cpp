@@ -660,6 +660,7 @@ void flatten(Module& module, Function& function) {
     const std::unordered_set<Name> none;
     Specialisations made;
     Specialiser s{module, none, ignored, true, made};
+    s.limits.expressions = 1u << 14;  // beyond, it is left to the materials that use it
     Function fresh;
     fresh.name = function.name;
     fresh.params = function.params;
