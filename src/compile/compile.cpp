@@ -293,8 +293,10 @@ struct Compilation {
 
     bool specialise() {
         bool ok = passes::specialise(module, pixel, {}, made, diagnostics, limits);
-        if (ok && options.interface == Interface::Live) {
-            baked = passes::topologyUniforms(module, *module.findOwn(pixel));
+        if (ok && options.interface != Interface::Baked) {
+            const ir::Function& entry = *module.findOwn(pixel);
+            bool live = options.interface == Interface::Live;
+            baked = live ? passes::topologyUniforms(module, entry) : passes::attributeUniforms(module, entry);
             ok = baked.empty() || passes::specialise(module, pixel, baked, made, diagnostics, limits);
         }
         if (!ok) return false;

@@ -409,6 +409,13 @@ struct Gatherer {
         return static_cast<int>(std::unique(kinds.begin(), kinds.end()) - kinds.begin());
     }
 
+    // Whether two operations have operands of the same types: a closure's mix, say, weighs by a number or a colour.
+    bool takeSameTypes(ExprId one, ExprId other) const {
+        auto ones = from.operandsOf(one), others = from.operandsOf(other);
+        return std::equal(ones.begin(), ones.end(), others.begin(), others.end(),
+                          [&](ExprId x, ExprId y) { return from[x].type == from[y].type; });
+    }
+
     // Whether values that nobody else uses are made by one operation, of different operands.
     bool isAlike(const Turn& turn, const std::vector<ExprId>& given) const {
         const Expr& first = from[given[0]];
@@ -419,7 +426,7 @@ struct Gatherer {
             const Expr& e = from[x];
             return ownerOf[x.index] == turn.group && loopOf[x.index] == kNoLoop && groupOf[x.index] == kNone &&
                    e.op == first.op && e.type == first.type && e.payload == first.payload &&
-                   e.operandCount == first.operandCount;
+                   e.operandCount == first.operandCount && takeSameTypes(x, given[0]);
         });
     }
 

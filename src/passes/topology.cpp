@@ -17,6 +17,7 @@ struct Topology {
     std::vector<Value> values = std::vector<Value>(f.exprs.size());  // by the defaults; Void where not known
     std::vector<bool> decides = std::vector<bool>(f.exprs.size());   // its value is why something vanishes
     std::unordered_set<Name> found = {};
+    bool onlyAttributes = false;  // whether choices between attributes are all that matters
 
     void evaluateAll() {
         for (std::uint32_t i = 0; i < f.exprs.size(); i++) evaluateOne(ExprId(i));
@@ -26,7 +27,7 @@ struct Topology {
         evaluateAll();
         // Users stand after their operands, so one pass from the end meets every reason after what it is a reason for.
         for (std::uint32_t i = static_cast<std::uint32_t>(f.exprs.size()); i-- > 0;) {
-            seed(ExprId(i));
+            onlyAttributes ? seedAttributes(ExprId(i)) : seed(ExprId(i));
             if (decides[i]) follow(ExprId(i));
         }
     }
@@ -71,6 +72,12 @@ struct Topology {
         }
         Value result;
         if (evaluate(e.op, e.type, std::span(operands, e.operandCount), e.payload, result)) out = result;
+    }
+
+    void seedAttributes(ExprId id) {
+        if (f[id].op != Op::Select || values[f.operand(id, 0).index].type == Type::Void) return;
+        if (f[f.operand(id, 1)].op == Op::Attribute || f[f.operand(id, 2)].op == Op::Attribute)
+            decides[f.operand(id, 0).index] = true;
     }
 
     // What vanishes by the value of an operand.
@@ -123,7 +130,8 @@ struct Topology {
         if (e.op == Op::Uniform) {
             const Value& v = values[id.index];
             bool bound = info(e.type).scalar == Scalar::Integer;
-            if (v.type != Type::Void && (bound || all(id, 0) || all(id, 1))) found.insert(Name(e.payload));
+            bool settled = bound || (!onlyAttributes && (all(id, 0) || all(id, 1)));
+            if (v.type != Type::Void && settled) found.insert(Name(e.payload));
             return;
         }
         auto operands = f.operandsOf(id);
@@ -137,6 +145,13 @@ struct Topology {
 
 std::unordered_set<Name> topologyUniforms(const Module& module, const Function& entry) {
     Topology t{module, entry};
+    t.run();
+    return t.found;
+}
+
+std::unordered_set<Name> attributeUniforms(const Module& module, const Function& entry) {
+    Topology t{module, entry};
+    t.onlyAttributes = true;
     t.run();
     return t.found;
 }

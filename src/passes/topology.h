@@ -15,6 +15,10 @@ namespace shaderx::passes {
 // made it vanish: a product that is 0 is so because of its factors that are 0. `entry` must be specialised.
 std::unordered_set<Name> topologyUniforms(const ir::Module& module, const ir::Function& entry);
 
+// Integers that choose which attributes of the mesh the entry reads: those must be known when the vertex inputs are
+// declared, of which no device has enough for all sets. `entry` must be specialised.
+std::unordered_set<Name> attributeUniforms(const ir::Module& module, const ir::Function& entry);
+
 // What each expression is by the defaults of all uniforms; of type Void where these do not decide it.
 std::vector<ir::Value> valuesByDefault(const ir::Module& module, const ir::Function& f);
 
