@@ -15,8 +15,10 @@ namespace {
 // What is needed of a function: truths.
 struct Use {
     std::vector<char> results, params;
-    std::vector<char> live;   // expressions
-    bool isNarrowed = false;  // results or parameters go
+    std::vector<char> live;            // expressions
+    std::vector<std::uint32_t> calls;  // expressions
+    bool isStale = true;               // other results are needed than when it was marked
+    bool isNarrowed = false;           // results or parameters go
 };
 
 struct Pruner {
@@ -39,11 +41,14 @@ struct Pruner {
         push(entry);
         while (!stack.empty()) {
             Function* f = stack.back().first;
-            std::size_t i = stack.back().second++;
+            std::size_t i = stack.back().second;
+            while (i < f->exprs.size() && f->exprs[i].op != Op::Call) i++;
+            stack.back().second = i + 1;
             if (i == f->exprs.size()) {
                 order.push_back(f);
                 stack.pop_back();
-            } else if (f->exprs[i].op == Op::Call) {
+            } else {
+                uses[f->name].calls.push_back(static_cast<std::uint32_t>(i));
                 push(Name(f->exprs[i].payload));
             }
         }
@@ -53,6 +58,8 @@ struct Pruner {
     // counts as read, and the callees learn which of their results are.
     void mark(Function& f, bool first) {
         Use& use = uses[f.name];
+        if (!use.isStale && use.calls.empty()) return;
+        use.isStale = false;
         use.live.assign(f.exprs.size(), false);
         use.params.assign(f.params.size(), false);
         for (std::size_t i = 0; i < f.results.size(); i++)
@@ -87,8 +94,10 @@ struct Pruner {
             const Function& f = *order[i];
             const std::vector<char>& needed = read[f.name];
             if (std::find(needed.begin(), needed.end(), true) == needed.end()) continue;
-            const std::vector<char>& live = uses[f.name].live;
-            for (std::size_t k = 0; k < f.exprs.size(); k++) {
+            const Use& use = uses[f.name];
+            if (use.calls.empty()) continue;
+            const std::vector<char>& live = use.live;
+            for (std::size_t k = use.calls[0]; k < f.exprs.size(); k++) {
                 const Expr& e = f.exprs[k];
                 if (!live[k]) continue;
                 if (e.op == Op::Call && e.type != Type::Tuple) read[Name(e.payload)][0] = true;
@@ -98,8 +107,11 @@ struct Pruner {
         }
         bool less = false;
         for (Function* f : order) {
-            less = less || read[f->name] != uses[f->name].results;
-            uses[f->name].results = std::move(read[f->name]);
+            Use& use = uses[f->name];
+            std::vector<char>& now = read[f->name];
+            if (now == use.results) continue;
+            less = use.isStale = true;
+            use.results = std::move(now);
         }
         return less;
     }
@@ -109,9 +121,10 @@ struct Pruner {
         Use& use = uses[f.name];
         use.isNarrowed = hasFalse(use.results) || (!isEntry && hasFalse(use.params));
         if (use.isNarrowed || hasFalse(use.live)) return true;
-        for (const Expr& e : f.exprs)
-            if (e.op == Op::Call && (uses[Name(e.payload)].isNarrowed || alias.count(Name(e.payload)))) return true;
-        return false;
+        return std::any_of(use.calls.begin(), use.calls.end(), [&](std::uint32_t c) {
+            const Name callee(f.exprs[c].payload);
+            return uses[callee].isNarrowed || alias.count(callee);
+        });
     }
     static bool hasFalse(const std::vector<char>& v) { return std::find(v.begin(), v.end(), false) != v.end(); }
 
@@ -146,11 +159,11 @@ struct Pruner {
         }
         for (ResultValue& r : f.results)
             if (instead[r.value.index]) r.value = instead[r.value.index];
-        for (Expr& e : f.exprs)
-            if (auto merged = alias.find(Name(e.payload)); e.op == Op::Call && merged != alias.end())
-                e.payload = merged->second.index;
+        for (std::uint32_t c : use.calls)
+            if (auto merged = alias.find(Name(f.exprs[c].payload)); merged != alias.end())
+                f.exprs[c].payload = merged->second.index;
         compact(f);
-        if (callsTwice(f)) unify(module, f);
+        if (use.calls.size() > 1 && callsTwice(f)) unify(module, f);
     }
 
     // The callee is narrowed already, so its results and parameters are those that are left.
