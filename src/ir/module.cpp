@@ -42,16 +42,19 @@ const Function* Module::find(Name name) const {
 }
 
 void Module::keepOnly(std::span<const Name> kept) {
-    std::vector<std::unique_ptr<Function>> ordered;
-    std::unordered_map<Name, Function*> byName;
-    for (Name name : kept)
-        for (std::unique_ptr<Function>& f : functions)
-            if (f && f->name == name) {
-                byName[name] = f.get();
-                ordered.push_back(std::move(f));
-            }
+    std::unordered_map<Name, std::size_t> places;
+    places.reserve(kept.size());
+    for (Name name : kept) places.emplace(name, places.size());
+    std::vector<std::unique_ptr<Function>> ordered(places.size());
+    for (std::unique_ptr<Function>& f : functions) {
+        auto place = places.find(f->name);
+        if (place == places.end())
+            byName_.erase(f->name);
+        else
+            ordered[place->second] = std::move(f);
+    }
+    std::erase(ordered, nullptr);
     functions = std::move(ordered);
-    byName_ = std::move(byName);
 }
 
 Uniform* Module::uniform(Name name) {

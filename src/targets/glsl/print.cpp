@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -282,8 +283,22 @@ void FunctionPrinter::assign(const std::string& target, ExprId value, ExprId sel
 
 namespace {
 
-void uniformLine(Stage& stage, Type type, const std::string& name, const std::vector<std::uint32_t>& words) {
-    stage.out.line({"uniform ", typeName(type), " ", name, " = ", constantText(type, words.data()), ";"});
+void uniformLine(Stage& stage, Type type, const std::string& name, std::string_view value) {
+    stage.out.line({"uniform ", typeName(type), " ", name, " = ", value, ";"});
+}
+
+// The same in every shader, and some of them are matrices.
+const std::string& defaultText(Context c) {
+    static const std::array<std::string, kContexts> texts = [] {
+        std::array<std::string, kContexts> all;
+        for (std::size_t i = 0; i < all.size(); i++) {
+            const Context context = static_cast<Context>(i);
+            const Type type = info(context).type;
+            if (componentCount(type)) all[i] = constantText(type, passes::defaultOf(context).data());
+        }
+        return all;
+    }();
+    return texts[static_cast<std::size_t>(c)];
 }
 
 // One uniform block; its members need no prefix. Values that the host has not set are undefined.
@@ -342,7 +357,7 @@ void uniforms(Stage& stage, const passes::StageUniforms& used) {
         if (info(c).type == Type::Texture2D)
             samplerLine(stage, name, index);
         else
-            uniformLine(stage, info(c).type, name, passes::defaultOf(c));
+            uniformLine(stage, info(c).type, name, defaultText(c));
     }
     if (!used.contexts.empty() && !used.uniforms.empty()) stage.out.line();
     for (Name name : used.uniforms)
@@ -353,7 +368,7 @@ void uniforms(Stage& stage, const passes::StageUniforms& used) {
                 samplerLine(stage, spelled, index);
                 continue;
             }
-            uniformLine(stage, u->type, spelled, u->values);
+            uniformLine(stage, u->type, spelled, constantText(u->type, u->values.data()));
             std::size_t value = std::string_view("uniform ").size() + typeName(u->type).size() + 1 + spelled.size();
             stage.apart.emplace_back(start + value, stage.out.size());
         }
