@@ -174,8 +174,9 @@ struct Simplifier {
                 return product();
             case Op::Div:
                 if (isAll(x[1], 1)) return fit(x[0]);
-                if (isAll(x[0], 0)) return zero();
+                // Before the next rule, so that 0 / 0 is the same whether or not the 0 is known.
                 if (x[0] == x[1]) return b.constant(type, {1.0f});
+                if (isAll(x[0], 0)) return zero();
                 return {};
             case Op::Min:
             case Op::Max:
