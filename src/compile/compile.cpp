@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <optional>
 #include <unordered_set>
 
@@ -51,53 +50,6 @@ bool interfaceNamed(std::string_view name, Interface& interface) {
     return name == "complete" || name == "live" || name == "baked" || name == "reduced";
 }
 
-namespace {
-
-// What functions of libraries became in documents before, for the next one; in use by one call at a time. What is made
-// with it has the same bytes as what is made without.
-struct Kept {
-    EnvironmentLight environment = EnvironmentLight::Samples;  // decides which functions are found
-    passes::Specialisations made{};
-    FinishedFunctions finished{};
-    text::FunctionTexts texts{};
-    bool isUsed = false;  // by a document before
-};
-
-class KeptPool {
-  public:
-    std::unique_ptr<Kept> take(EnvironmentLight environment) {
-        {
-            std::lock_guard lock(mutex_);
-            for (std::size_t i = all_.size(); i-- > 0;)
-                if (all_[i]->environment == environment) {
-                    std::unique_ptr<Kept> found = std::move(all_[i]);
-                    all_.erase(all_.begin() + static_cast<std::ptrdiff_t>(i));
-                    return found;
-                }
-        }
-        auto fresh = std::make_unique<Kept>();
-        fresh->environment = environment;
-        return fresh;
-    }
-    void giveBack(std::unique_ptr<Kept> kept) {
-        if (kept->made.byKey.size() > kMostClones) return;
-        std::lock_guard lock(mutex_);
-        all_.push_back(std::move(kept));
-    }
-    void clear() {
-        std::lock_guard lock(mutex_);
-        all_.clear();
-    }
-
-  private:
-    static constexpr std::size_t kMostClones = 1u << 14;  // a few dozen MB; then they are made anew
-
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<Kept>> all_;
-};
-
-}  // namespace
-
 struct Compiler::State {
     explicit State(std::span<const std::uint8_t> image)
         : names(namesOf(image)), known(names), builtin(openLibrary(names, image)) {}
@@ -129,7 +81,6 @@ struct Compiler::State {
     doc::WellKnown known;
     std::unique_ptr<Library> builtin;
     std::vector<std::unique_ptr<Library>> user;
-    KeptPool kept;
 };
 
 Compiler::Compiler(std::span<const std::uint8_t> libraryImage) : state_(std::make_unique<State>(libraryImage)) {}
@@ -162,7 +113,6 @@ bool Compiler::addLibrary(std::vector<LibraryFile> files, Diagnostics& diagnosti
         auto library = makeLibrary(state_->names, std::move(files), below, diagnostics);
         if (!library) return false;
         state_->user.push_back(std::move(library));
-        state_->kept.clear();
         return true;
     });
 }
@@ -432,17 +382,10 @@ struct Compilation {
 struct Compiler::Batch {
     std::optional<doc::Definitions> definitions{};
     std::optional<NodeBodies> bodies{};
-    std::unique_ptr<Kept> kept{};
+    passes::Specialisations made{};
+    FinishedFunctions finished{};
+    text::FunctionTexts texts{};
     bool isSeveral = false;  // elements: it pays to keep what is finished
-    bool isPure = true;      // nothing of the document's own is in what is kept
-
-    // Leaves what was made of libraries alone to the next document.
-    void close(KeptPool& pool) {
-        if (kept && isPure && bodies && bodies->made().functions.empty()) {
-            kept->isUsed = true;
-            pool.giveBack(std::move(kept));
-        }
-    }
 };
 
 template <class Run>
@@ -453,16 +396,15 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
         diagnostics.error("foreign-element", "the document has no such element");
         return false;
     }
-    auto& [definitions, bodies, kept, isSeveral, isPure] = batch;
+    auto& [definitions, bodies, made, finished, texts, isSeveral] = batch;
     Diagnostics own;
     bool ok = guarded(own, fmt::format("generating '{}'", document.path(element)), [&] {
         if (!definitions) definitions = state_->definitions(document);
         // Uniforms inside of bodies have taken names that another element may want.
         if (bodies && !bodies->made().uniforms.empty()) {
             bodies.reset();
-            kept.reset();
+            made.clear();
         }
-        if (!kept) kept = state_->kept.take(options.environment);
         if (!bodies)
             bodies.emplace(state_->names, *definitions, state_->libraries(), options.maxDepth).addDocument(document);
         bodies->forgetNames();
@@ -473,9 +415,9 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
                       state_->names,
                       *definitions,
                       *bodies,
-                      kept->made,
-                      isSeveral || kept->isUsed ? &kept->finished : nullptr,
-                      kept->texts,
+                      made,
+                      isSeveral ? &finished : nullptr,
+                      texts,
                       ir::Module(state_->names)};
         Prefiltered prefiltered(state_->names, c.module);
         if (options.environment != EnvironmentLight::Samples) c.module.sources.push_back(&prefiltered);
@@ -483,7 +425,6 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
         for (Library* l : state_->libraries()) c.module.sources.push_back(l);
         return run(c);
     });
-    isPure = isPure && ok;
     for (const Diagnostic& d : own.all()) {
         Diagnostic& told = diagnostics.add(d.severity, d.code, d.message);
         told = d;
@@ -505,7 +446,6 @@ void Compiler::generate(const doc::Document& document, std::span<const doc::Elem
             compile(batch, document, element, options, diagnostics, [&](Compilation& c) { return c.run(shader); });
         done(element, ok ? Result<Shader>(std::move(shader)) : Failure{}, diagnostics);
     }
-    batch.close(state_->kept);
 }
 
 Result<Shader> Compiler::generate(const doc::Document& document, doc::ElementId element, const GenerateOptions& options,
