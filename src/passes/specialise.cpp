@@ -299,7 +299,7 @@ struct Specialiser {
             return frame.results;
         }
         depth++;
-        if (made ? expands(*callee) : expands(*callee, Name(e.payload))) {
+        if (mustExpand(*callee) || isSmall(*callee)) {
             expand(*callee, b, frame.arguments, frame.results);
         } else if (isPartial) {
             keepCall(b, e, *callee, frame);
@@ -336,18 +336,6 @@ struct Specialiser {
             for (const ResultValue& r : callee->results) results.push_back(b.null(r.type));
         else
             results.push_back(b.null(e.type == Type::Tuple ? Type::Float : e.type));
-    }
-
-    static bool expands(const Function& f) { return mustExpand(f) || isSmall(f); }
-
-    // The same, remembered of libraries' functions, which stay as they are.
-    bool expands(const Function& f, Name name) {
-        using Manner = Clones::Manner;
-        if (module.findOwn(name)) return expands(f);
-        if (name.index >= shared.manners.size()) shared.manners.resize(name.index + 1);
-        Manner& m = shared.manners[name.index];
-        if (m == Manner::Unknown) m = expands(f) ? Manner::Expands : Manner::IsCloned;
-        return m == Manner::Expands;
     }
 
     static bool mustExpand(const Function& f) {

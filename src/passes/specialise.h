@@ -32,14 +32,10 @@ struct Specialisations {
     };
     std::unordered_map<Key, Clone, KeyHash> byKey;
     std::vector<const Clone*> named;
-    // By name, of functions of libraries: whether they expand where they are called.
-    enum class Manner : std::uint8_t { Unknown, Expands, IsCloned };
-    std::vector<Manner> manners;
 
     void clear() {
         named.clear();
         byKey.clear();
-        manners.clear();
     }
 };
 
