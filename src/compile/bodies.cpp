@@ -1,5 +1,7 @@
 #include "compile/bodies.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "base/numbers.h"
@@ -163,8 +165,13 @@ bool NodeBodies::leaf(doc::NodeDef def, std::string_view name) {
     std::vector<ExprId> inputs;
     for (std::uint32_t i = 0; i < f.params.size(); i++) inputs.push_back(b.param(i));
     Name leafName = names_.intern(name);
-    if (!made_.leaf(leafName)) made_.leaves.push_back({leafName, f.params});
     auto outputs = definitions_.outputs(def);
+    if (outputs.size() != 1 || !isClosure(typeNamed(names_.text(outputs[0].type)))) return false;
+    const LeafInfo* known = made_.leaf(leafName);
+    auto isSame = [](const Param& x, const Param& y) { return x.name == y.name && x.type == y.type; };
+    if (known && !std::equal(f.params.begin(), f.params.end(), known->params.begin(), known->params.end(), isSame))
+        return false;  // whoever evaluates it finds its inputs by their places
+    if (!known) made_.leaves.push_back({leafName, f.params});
     b.addResult(outputs[0].name, b.emit(Op::Leaf, typeNamed(names_.text(outputs[0].type)), inputs, leafName.index));
     made_.put(std::move(f));
     return true;
