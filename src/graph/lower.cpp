@@ -63,7 +63,7 @@ struct Lowerer {
         for (const Output& o : graph.outputs) {
             ExprId value = fitted(valueOf(o.source, o.type, nullptr, nullptr), o.source, o.type, o.element);
             if (!value) value = b.null(o.type);
-            b.addResult(o.name, value);
+            b.addResult(o.name ? o.name : d.names().intern("out"), value);  // an element may lack its name
         }
         if (!ok) return false;
         compact(fresh);
