@@ -174,9 +174,9 @@ struct Simplifier {
                 return product();
             case Op::Div:
                 if (isAll(x[1], 1)) return fit(x[0]);
-                // Before the next rule, so that 0 / 0 is the same whether or not the 0 is known.
-                if (x[0] == x[1]) return b.constant(type, {1.0f});
                 if (isAll(x[0], 0)) return zero();
+                // A value of the document may be 0, and 0 / 0 is 0 by the rule above once it is known.
+                if (x[0] == x[1] && varies(x[0], 10)) return b.constant(type, {1.0f});
                 return {};
             case Op::Min:
             case Op::Max:
@@ -399,6 +399,15 @@ struct Simplifier {
         if (std::all_of(x.begin(), x.end(), [&](ExprId e) { return e == x[0] && isScalar(expr(e).type); }))
             return b.make(type, {x[0]});
         return gathered();
+    }
+
+    // Whether an expression is made of more than constants and uniforms, as far as a look of some depth tells.
+    bool varies(ExprId e, int depth) const {
+        const Expr& of = expr(e);
+        if (of.op == Op::Constant || of.op == Op::Uniform) return false;
+        auto operands = f().operandsOf(of);
+        return depth == 0 || operands.empty() ||
+               std::any_of(operands.begin(), operands.end(), [&](ExprId o) { return varies(o, depth - 1); });
     }
 
     // make(m[0].xyz, m[1].xyz, m[2].xyz) is the upper left part of m.
