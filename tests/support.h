@@ -93,11 +93,11 @@ struct Ran {
     std::string output, errors;
 };
 
-// Runs a shell command; one that takes 20 seconds is stopped and has the exit code 124.
+// Runs a shell command; one that takes 200 seconds is stopped and has the exit code 124.
 inline Ran runCommand(const std::string& command, const fs::path& folder = {}) {
     OwnFolder own;
     std::string line = folder.empty() ? "" : "cd '" + folder.string() + "' && ";
-    line += "NO_COLOR=1 timeout 20 " + command + " 2>'" + own / "errors" + "'";
+    line += "NO_COLOR=1 timeout 200 " + command + " 2>'" + own / "errors" + "'";
     Ran ran;
     std::FILE* pipe = ::popen(line.c_str(), "r");
     if (!pipe) return ran;
