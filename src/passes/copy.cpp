@@ -48,12 +48,17 @@ ExprId Copy::raw(ExprId id) {
     return made;
 }
 
+Function headOf(const Function& f) {
+    Function head;
+    head.name = f.name;
+    head.params = f.params;
+    head.comment = f.comment;
+    head.isInline = f.isInline;
+    return head;
+}
+
 void unify(Module& module, Function& f) {
-    Function fresh;
-    fresh.name = f.name;
-    fresh.params = f.params;
-    fresh.comment = f.comment;
-    fresh.isInline = f.isInline;
+    Function fresh = headOf(f);
     Builder b(module, fresh);
     b.reserve(f.exprs.size());
     Copy copy(f, b);

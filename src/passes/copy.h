@@ -39,6 +39,9 @@ class Copy {
     std::vector<ir::ExprId> map_, operands_;
 };
 
+// What a function is called with and as, to build its expressions anew.
+ir::Function headOf(const ir::Function& function);
+
 // Makes equal expressions of a function one again, and drops what nothing needs.
 void unify(ir::Module& module, ir::Function& function);
 

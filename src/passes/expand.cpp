@@ -38,11 +38,7 @@ struct Expander {
             return callee && isWanted(*callee);
         };
         if (std::none_of(old->exprs.begin(), old->exprs.end(), expands)) return;
-        Function fresh;
-        fresh.name = name;
-        fresh.params = old->params;
-        fresh.comment = old->comment;
-        fresh.isInline = old->isInline;
+        Function fresh = headOf(*old);
         Builder b(module, fresh);
         b.reserve(old->exprs.size());
         std::vector<ExprId> arguments;

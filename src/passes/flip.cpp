@@ -36,11 +36,7 @@ struct Flip {
     static bool isRead(const Expr& e) { return e.op == Op::TextureLevel || e.op == Op::TextureGrad; }
 
     void rewrite(Function& f) {
-        Function fresh;
-        fresh.name = f.name;
-        fresh.params = f.params;
-        fresh.comment = f.comment;
-        fresh.isInline = f.isInline;
+        Function fresh = headOf(f);
         Builder b(module, fresh);
         Copy copy(f, b);
         std::vector<bool> live = reachable(f);

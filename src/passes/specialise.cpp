@@ -661,11 +661,7 @@ void flatten(Module& module, Function& function) {
     Specialisations made;
     Specialiser s{module, none, ignored, true, made};
     s.limits.expressions = 1u << 14;  // beyond, it is left to the materials that use it
-    Function fresh;
-    fresh.name = function.name;
-    fresh.params = function.params;
-    fresh.isInline = function.isInline;
-    fresh.comment = function.comment;
+    Function fresh = headOf(function);
     s.rebuild(function, fresh);
     if (s.ok) function = std::move(fresh);
 }

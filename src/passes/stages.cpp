@@ -60,11 +60,7 @@ struct Reads {
 
 // Reads the first components of an attribute that is carried with more.
 void narrowReads(Module& module, Function& f, const Reads& reads) {
-    Function fresh;
-    fresh.name = f.name;
-    fresh.params = f.params;
-    fresh.comment = f.comment;
-    fresh.isInline = f.isInline;
+    Function fresh = headOf(f);
     Builder b(module, fresh);
     Copy copy(f, b);
     const std::vector<bool> live = reachable(f);
