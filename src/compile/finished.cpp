@@ -1,6 +1,8 @@
 #include "compile/finished.h"
 
 #include <algorithm>
+#include <cstring>
+#include <type_traits>
 
 namespace shaderx {
 
@@ -8,9 +10,18 @@ using namespace ir;
 
 // All that decides what a function becomes: a call says by number what it calls.
 void FinishedFunctions::keyOf(const Module& module, const Function& f) {
-    key_.clear();
-    auto add = [&](std::uint32_t word) { key_.push_back(word); };
-    std::string_view stem = module.names->text(f.name);
+    constexpr std::size_t kExprWords = sizeof(Expr) / sizeof(std::uint32_t);
+    const std::string_view stem = module.names->text(f.name);
+    const std::size_t interface = 2 * f.params.size() + 3 * f.results.size();
+    key_.resize(5 + interface + f.exprs.size() * kExprWords + f.operands.size() + f.words.size() + f.hints.size());
+    std::uint32_t* to = key_.data();
+    auto add = [&](std::uint32_t word) { *to++ = word; };
+    auto addAll = [&](const auto& list) {
+        static_assert(std::has_unique_object_representations_v<std::remove_cvref_t<decltype(list[0])>>);
+        const std::size_t size = list.size() * sizeof(list[0]);
+        if (size) std::memcpy(to, list.data(), size);
+        to += size / sizeof(std::uint32_t);
+    };
     add(module.names->intern(stem.substr(0, stem.find('@'))).index);
     add(f.loops);
     add(static_cast<std::uint32_t>(f.params.size()));
@@ -25,14 +36,13 @@ void FinishedFunctions::keyOf(const Module& module, const Function& f) {
         add(r.value.index);
     }
     add(static_cast<std::uint32_t>(f.exprs.size()));
-    for (const Expr& e : f.exprs) {
-        add(static_cast<std::uint32_t>(e.op) << 16 | static_cast<std::uint32_t>(e.type));
-        add(e.operandCount);
-        add(e.op == Op::Call ? numberOf_.at(Name(e.payload)) : e.payload);
-    }
-    for (ExprId o : f.operands) add(o.index);
-    for (std::uint32_t w : f.words) add(w);
-    for (Name hint : f.hints) add(hint.index);
+    std::uint32_t* exprs = to;
+    addAll(f.exprs);
+    for (std::size_t i = 0; i < f.exprs.size(); i++)
+        if (f.exprs[i].op == Op::Call) exprs[(i + 1) * kExprWords - 1] = numberOf_.at(Name(f.exprs[i].payload));
+    addAll(f.operands);
+    addAll(f.words);
+    addAll(f.hints);
 }
 
 void FinishedFunctions::finish(Module& module, std::span<const Name> apart,

@@ -1,8 +1,8 @@
 #include "compile/json.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -15,32 +15,42 @@ void JsonWriter::begin() {
         keyed_ = false;
         return;
     }
-    bool lines = lines_ >> depth_ & 1;
-    if (!first_) out_ += lines ? "," : ", ";
-    if (lines) out_.append(1, '\n').append(static_cast<std::size_t>(depth_) * 2, ' ');
+    const bool lines = lines_ >> depth_ & 1;
+    if (!first_) lines ? put(',') : put(", ");
+    if (lines) newLine();
     first_ = false;
+}
+
+void JsonWriter::newLine() {
+    const std::size_t indent = static_cast<std::size_t>(depth_) * 2;
+    char* to = room(indent + 1);
+    *to = '\n';
+    std::fill_n(to + 1, indent, ' ');
+    size_ += indent + 1;
 }
 
 void JsonWriter::open(char bracket, bool lines) {
     begin();
-    out_ += bracket;
+    put(bracket);
     depth_++;
     lines_ = (lines_ & ~(std::uint64_t(1) << depth_)) | std::uint64_t(lines) << depth_;
     first_ = true;
 }
 
 void JsonWriter::close(char bracket) {
-    bool lines = lines_ >> depth_ & 1;
+    const bool lines = lines_ >> depth_ & 1;
     depth_--;
-    if (lines && !first_) out_.append(1, '\n').append(static_cast<std::size_t>(depth_) * 2, ' ');
-    out_ += bracket;
-    if (depth_ == 0) out_ += '\n';
+    if (lines && !first_) newLine();
+    put(bracket);
+    if (depth_ == 0) put('\n');
     first_ = false;
 }
 
 void JsonWriter::key(std::string_view name) {
     begin();
-    out_.append(1, '"').append(name).append("\": ");
+    put('"');
+    put(name);
+    put("\": ");
     keyed_ = true;
 }
 
@@ -51,15 +61,16 @@ void JsonWriter::text(std::string_view value) {
 
 void JsonWriter::integer(std::int64_t value) {
     begin();
-    char digits[24];
-    out_.append(digits, std::to_chars(digits, std::end(digits), value).ptr);
+    constexpr std::size_t kLongest = 24;
+    char* to = room(kLongest);
+    size_ += static_cast<std::size_t>(std::to_chars(to, to + kLongest, value).ptr - to);
 }
 
 void JsonWriter::number(float value) {
     if (!std::isfinite(value)) return null();
     if (std::abs(value) < 1e6f && value == std::trunc(value)) return integer(static_cast<std::int64_t>(value));
     begin();
-    out_ += formatFloat(value);
+    put(formatFloat(value));
 }
 
 // Bytes of the UTF-8 character at the start of a text, 0 where it is none (RFC 3629, section 4).
@@ -79,29 +90,31 @@ static std::size_t characterLength(std::string_view text) {
 }
 
 void JsonWriter::quoted(std::string_view text) {
-    out_ += '"';
+    put('"');
     for (std::size_t i = 0; i < text.size();) {
-        std::size_t plain = i;
         auto isPlain = [](char c) { return c >= ' ' && c < 0x7f && c != '"' && c != '\\'; };
-        while (i < text.size() && isPlain(text[i])) i++;
-        out_.append(text.substr(plain, i - plain));
+        char* to = room(text.size() - i);
+        const std::size_t plain = i;
+        for (; i < text.size() && isPlain(text[i]); i++) *to++ = text[i];
+        size_ += i - plain;
         if (i == text.size()) break;
         char c = text[i];
         if (c == '"' || c == '\\') {
-            out_.append(1, '\\').append(1, c);
+            put('\\');
+            put(c);
             i++;
         } else if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) {
-            fmt::format_to(std::back_inserter(out_), "\\u{:04x}", static_cast<unsigned>(c));
+            put(fmt::format("\\u{:04x}", static_cast<unsigned>(c)));
             i++;
         } else if (std::size_t n = characterLength(text.substr(i))) {
-            out_.append(text.substr(i, n));
+            put(text.substr(i, n));
             i += n;
         } else {
-            out_ += "\xef\xbf\xbd";
+            put("\xef\xbf\xbd");
             i++;
         }
     }
-    out_ += '"';
+    put('"');
 }
 
 }  // namespace shaderx

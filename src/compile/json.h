@@ -10,7 +10,7 @@ namespace shaderx {
 // The caller keeps the grammar; the writer puts commas, quotes and line ends.
 class JsonWriter {
   public:
-    JsonWriter() { out_.reserve(4096); }
+    JsonWriter() : out_(4096, '\0') {}
     // The document itself, and what is spread over lines: a member or element a line.
     void openObject() { open('{', true); }
     void openArray() { open('[', true); }
@@ -33,19 +33,38 @@ class JsonWriter {
         text(value);
     }
 
-    std::string take() { return std::move(out_); }
+    std::string take() {
+        out_.resize(size_);
+        return std::move(out_);
+    }
 
   private:
     void open(char bracket, bool lines);
     void close(char bracket);
     void begin();
+    void newLine();
     void word(std::string_view text) {
         begin();
-        out_ += text;
+        put(text);
     }
     void quoted(std::string_view text);
 
-    std::string out_;
+    // Where the next characters go, at most so many; whoever writes them moves `size_`.
+    char* room(std::size_t characters) {
+        if (out_.size() - size_ < characters) out_.resize(2 * out_.size() + characters);
+        return out_.data() + size_;
+    }
+    void put(char c) {
+        *room(1) = c;
+        size_++;
+    }
+    void put(std::string_view text) {
+        text.copy(room(text.size()), text.size());
+        size_ += text.size();
+    }
+
+    std::string out_;          // the text so far, and room for more
+    std::size_t size_ = 0;     // of the text
     std::uint64_t lines_ = 0;  // bit of a depth: its members stand on lines of their own
     int depth_ = 0;            // at most 63
     bool first_ = true, keyed_ = false;

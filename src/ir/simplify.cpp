@@ -509,7 +509,7 @@ ExprId simplify(Builder& b, Op op, Type type, std::span<const ExprId> operands, 
     // The arena may grow while rules build, so the operands are copied.
     if (operands.size() <= kMaxFolded) {
         std::array<ExprId, kMaxFolded> copy;
-        std::copy(operands.begin(), operands.end(), copy.begin());
+        for (std::size_t k = 0; k < operands.size(); k++) copy[k] = operands[k];  // few: a call would cost more
         return Simplifier{b, op, type, std::span<const ExprId>(copy.data(), operands.size()), payload}.run();
     }
     const std::vector<ExprId> many(operands.begin(), operands.end());

@@ -49,6 +49,7 @@ struct Flip {
                 copy.one(id);
         }
         for (const ResultValue& r : f.results) b.addResult(r.name, copy[r.value]);
+        compact(fresh);
         f = std::move(fresh);
     }
 

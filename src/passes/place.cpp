@@ -63,6 +63,7 @@ struct Value {
     int work = 0;                  // operations below it, up to values that are used elsewhere too
     int length = 0;                // of its text
     bool live = false, named = false, conditional = false;
+    bool free = false;  // see isFree
 };
 
 struct Placer {
@@ -94,19 +95,21 @@ struct Placer {
 
     void markLive() {
         for (const ResultValue& r : f.results) values[r.value.index].live = true;
-        for (std::size_t i = n; i-- > 0;)
-            if (values[i].live)
-                for (ExprId o : f.operandsOf(f.exprs[i])) {
-                    values[o.index].live = true;
-                    values[o.index].users++;
-                }
+        for (std::size_t i = n; i-- > 0;) {
+            if (!values[i].live) continue;
+            values[i].free = isFree(f, ExprId(static_cast<std::uint32_t>(i)));
+            for (ExprId o : f.operandsOf(f.exprs[i])) {
+                values[o.index].live = true;
+                values[o.index].users++;
+            }
+        }
     }
 
     // Values that a loop around does not change are not counted; a loop counts as much work.
     void measureWork() {
         for (std::uint32_t i = 0; i < n; i++) {
             Value& v = values[i];
-            if (!v.live || isFree(f, ExprId(i))) {
+            if (!v.live || v.free) {
                 // The results of one loop or call are its work.
                 if (v.live && f.exprs[i].op == Op::Result) v.work = values[f.operand(ExprId(i), 0).index].work;
                 continue;
@@ -215,13 +218,13 @@ struct Placer {
         for (std::uint32_t i = 0; i < n; i++) {
             if (!values[i].live || !values[i].uses || isStatement(i)) continue;
             bool several = f.exprs[i].type == Type::Tuple;
-            values[i].named = several || (!isFree(f, ExprId(i)) && !isView(i) &&
+            values[i].named = several || (!values[i].free && !isView(i) &&
                                           (values[i].uses > 1 || values[i].scope != values[i].useScope));
         }
         // What a loop counts to is asked every turn.
         for (std::uint32_t i = 0; i < n; i++)
             if (values[i].body != kNone && f.exprs[i].op == Op::Loop)
-                if (ExprId count = f.operand(ExprId(i), 0); !isFree(f, count) && !isStatement(count.index))
+                if (ExprId count = f.operand(ExprId(i), 0); !values[count.index].free && !isStatement(count.index))
                     values[count.index].named = true;
     }
 
@@ -298,7 +301,7 @@ struct Placer {
         };
         for (std::uint32_t i = 0; i < n; i++) {
             if (!values[i].live || !values[i].uses) continue;
-            if (isFree(f, ExprId(i))) {
+            if (values[i].free) {
                 values[i].length = freeLength(f.exprs[i]);
                 continue;
             }
@@ -314,8 +317,8 @@ struct Placer {
                 for (ExprId o : operands) {
                     int l = lengthOf(o);
                     sum += l;
-                    if (values[o.index].named || isStatement(o.index) || isFree(f, o) || f[o].type == Type::Tuple)
-                        continue;
+                    const Value& v = values[o.index];
+                    if (v.named || isStatement(o.index) || v.free || f[o].type == Type::Tuple) continue;
                     int s = l + (f.hints[o.index] ? 2 * kName : 0);
                     if (s > score) {
                         score = s;

@@ -1,6 +1,7 @@
 #include "passes/prune.h"
 
 #include <algorithm>
+#include <cstring>
 #include <unordered_map>
 
 #include "base/diagnostics.h"
@@ -12,130 +13,143 @@ using namespace ir;
 
 namespace {
 
-// What is needed of a function: truths.
+// A call and the number of the function that it calls.
+struct Call {
+    std::uint32_t expr, callee;
+};
+
+// A function and what is needed of it: truths.
 struct Use {
-    std::vector<char> results, params;
-    std::vector<char> live;            // expressions
-    std::vector<std::uint32_t> calls;  // expressions
-    bool isStale = true;               // other results are needed than when it was marked
-    bool isNarrowed = false;           // results or parameters go
+    Function* function;
+    std::vector<char> results, params{};
+    std::vector<char> live{};  // expressions
+    std::vector<Call> calls{};
+    std::size_t sorted = 0;  // expressions that were asked for calls
+    bool isEntry = false;
+    bool isStale = true;      // other results are needed than when it was marked
+    bool isNarrowed = false;  // results or parameters go
+    Name alias{};             // an earlier function that is the same
 };
 
 struct Pruner {
     Module& module;
-    std::unordered_map<Name, Use> uses{};
-    std::vector<Function*> order{};  // callees first
-    std::unordered_map<Name, Name> alias{};
-    std::vector<ExprId> instead{};  // of results of calls that have one left: the call
+    std::vector<Use> uses{};
+    std::unordered_map<Name, std::uint32_t> numbers{};
+    std::vector<std::uint32_t> order{};   // callees first
+    std::vector<std::uint32_t> callOf{};  // of the function under way: by expression the callee's number
+    std::vector<ExprId> instead{};        // of results of calls that have one left: the call
 
     // Callees first, each once; the call graph has no cycles.
     void sort(Name entry) {
-        std::vector<std::pair<Function*, std::size_t>> stack;
+        std::vector<std::uint32_t> stack;
         auto push = [&](Name name) {
+            const auto [known, isNew] = numbers.try_emplace(name, static_cast<std::uint32_t>(uses.size()));
+            if (!isNew) return known->second;
             Function* f = module.findOwn(name);
             ensure(f, "a call of a function that is not the module's own");
-            if (uses.count(name)) return;
-            uses[name].results.assign(f->results.size(), false);
-            stack.push_back({f, 0});
+            uses.push_back({f, std::vector<char>(f->results.size(), false)});
+            stack.push_back(known->second);
+            return known->second;
         };
         push(entry);
         while (!stack.empty()) {
-            Function* f = stack.back().first;
-            std::size_t i = stack.back().second;
-            while (i < f->exprs.size() && f->exprs[i].op != Op::Call) i++;
-            stack.back().second = i + 1;
-            if (i == f->exprs.size()) {
-                order.push_back(f);
+            const std::uint32_t number = stack.back();
+            const Function& f = *uses[number].function;
+            std::size_t i = uses[number].sorted;
+            while (i < f.exprs.size() && f.exprs[i].op != Op::Call) i++;
+            uses[number].sorted = i + 1;
+            if (i == f.exprs.size()) {
+                order.push_back(number);
                 stack.pop_back();
             } else {
-                uses[f->name].calls.push_back(static_cast<std::uint32_t>(i));
-                push(Name(f->exprs[i].payload));
+                const std::uint32_t callee = push(Name(f.exprs[i].payload));
+                uses[number].calls.push_back({static_cast<std::uint32_t>(i), callee});
             }
         }
     }
 
     // What the needed results of a function need. Before the callees' parameters are known (`first`), every argument
     // counts as read, and the callees learn which of their results are.
-    void mark(Function& f, bool first) {
-        Use& use = uses[f.name];
+    void mark(Use& use, bool first) {
         if (!use.isStale && use.calls.empty()) return;
+        const Function& f = *use.function;
         use.isStale = false;
         use.live.assign(f.exprs.size(), false);
         use.params.assign(f.params.size(), false);
         for (std::size_t i = 0; i < f.results.size(); i++)
             if (use.results[i]) use.live[f.results[i].value.index] = true;
+        char* live = use.live.data();
+        std::size_t call = use.calls.size();  // the calls before the expression under way
         for (std::size_t i = f.exprs.size(); i-- > 0;) {
-            if (!use.live[i]) continue;
             const Expr& e = f.exprs[i];
-            auto operands = f.operandsOf(e);
+            if (e.op == Op::Call) call--;
+            if (!live[i]) continue;
             if (e.op == Op::Call && !first) {
-                const std::vector<char>& read = uses[Name(e.payload)].params;
-                for (std::size_t k = 0; k < operands.size(); k++)
-                    if (read[k]) use.live[operands[k].index] = true;
+                const std::vector<char>& read = uses[use.calls[call].callee].params;
+                for (std::size_t k = 0; k < e.operandCount; k++)
+                    if (read[k]) live[f.operands[e.firstOperand + k].index] = true;
                 continue;
             }
-            for (ExprId o : operands) use.live[o.index] = true;
+            const ExprId* operands = f.operands.data() + e.firstOperand;
+            for (std::size_t k = 0; k < e.operandCount; k++) live[operands[k].index] = true;
             if (e.op == Op::Param) use.params[e.payload] = true;
-            if (first && e.op == Op::Call && e.type != Type::Tuple) uses[Name(e.payload)].results[0] = true;
-            if (first && e.op == Op::Result) {
-                const Expr& source = f[operands[0]];
-                if (source.op == Op::Call) uses[Name(source.payload)].results[e.payload] = true;
-            }
+        }
+        if (first) read(use, [&](std::uint32_t callee, std::uint32_t k) { uses[callee].results[k] = true; });
+    }
+
+    // Calls visit(callee, k) for each result of a call that a live expression reads.
+    template <class F>
+    void read(const Use& use, F&& visit) {
+        if (use.calls.empty()) return;
+        const Function& f = *use.function;
+        callOf.resize(std::max(callOf.size(), f.exprs.size()));
+        for (const Call& c : use.calls) callOf[c.expr] = c.callee;
+        for (std::size_t i = use.calls[0].expr; i < f.exprs.size(); i++) {
+            const Expr& e = f.exprs[i];
+            if (!use.live[i]) continue;
+            if (e.op == Op::Call && e.type != Type::Tuple) visit(callOf[i], 0);
+            if (e.op != Op::Result) continue;
+            const ExprId of = f.operands[e.firstOperand];
+            if (f[of].op == Op::Call) visit(callOf[of.index], e.payload);
         }
     }
 
     // Forgets results that only dead expressions read, now that parameters nobody reads are known; true if there are
     // any.
-    bool forget(std::span<const Name> entries) {
-        std::unordered_map<Name, std::vector<char>> read;
-        for (Function* f : order) read[f->name].assign(f->results.size(), false);
-        for (Name e : entries) read[e] = uses[e].results;
+    bool forget() {
+        std::vector<std::vector<char>> needed(uses.size());
+        for (std::size_t n = 0; n < uses.size(); n++) needed[n].assign(uses[n].results.size(), uses[n].isEntry);
         for (std::size_t i = order.size(); i-- > 0;) {
-            const Function& f = *order[i];
-            const std::vector<char>& needed = read[f.name];
-            if (std::find(needed.begin(), needed.end(), true) == needed.end()) continue;
-            const Use& use = uses[f.name];
-            if (use.calls.empty()) continue;
-            const std::vector<char>& live = use.live;
-            for (std::size_t k = use.calls[0]; k < f.exprs.size(); k++) {
-                const Expr& e = f.exprs[k];
-                if (!live[k]) continue;
-                if (e.op == Op::Call && e.type != Type::Tuple) read[Name(e.payload)][0] = true;
-                if (e.op == Op::Result && f[f.operandsOf(e)[0]].op == Op::Call)
-                    read[Name(f[f.operandsOf(e)[0]].payload)][e.payload] = true;
-            }
+            const std::vector<char>& own = needed[order[i]];
+            if (std::find(own.begin(), own.end(), true) == own.end()) continue;
+            read(uses[order[i]], [&](std::uint32_t callee, std::uint32_t k) { needed[callee][k] = true; });
         }
         bool less = false;
-        for (Function* f : order) {
-            Use& use = uses[f->name];
-            std::vector<char>& now = read[f->name];
-            if (now == use.results) continue;
-            less = use.isStale = true;
-            use.results = std::move(now);
+        for (std::size_t n = 0; n < uses.size(); n++) {
+            if (needed[n] == uses[n].results) continue;
+            less = uses[n].isStale = true;
+            uses[n].results = std::move(needed[n]);
         }
         return less;
     }
 
     // Whether anything of the function goes, or of the interface of those that it calls.
-    bool isChanged(const Function& f, bool isEntry) {
-        Use& use = uses[f.name];
-        use.isNarrowed = hasFalse(use.results) || (!isEntry && hasFalse(use.params));
+    bool isChanged(Use& use) const {
+        use.isNarrowed = hasFalse(use.results) || (!use.isEntry && hasFalse(use.params));
         if (use.isNarrowed || hasFalse(use.live)) return true;
-        return std::any_of(use.calls.begin(), use.calls.end(), [&](std::uint32_t c) {
-            const Name callee(f.exprs[c].payload);
-            return uses[callee].isNarrowed || alias.count(callee);
-        });
+        return std::any_of(use.calls.begin(), use.calls.end(),
+                           [&](const Call& c) { return uses[c.callee].isNarrowed || uses[c.callee].alias; });
     }
-    static bool hasFalse(const std::vector<char>& v) { return std::find(v.begin(), v.end(), false) != v.end(); }
+    static bool hasFalse(const std::vector<char>& v) { return std::memchr(v.data(), false, v.size()) != nullptr; }
 
     // Takes what goes out of a function, in place: what is left is as simple as it was.
-    void narrow(Function& f, bool isEntry) {
-        if (!isChanged(f, isEntry)) return;
-        const Use& use = uses[f.name];
+    void narrow(Use& use) {
+        if (!isChanged(use)) return;
+        Function& f = *use.function;
         std::vector<std::uint32_t> param(f.params.size());
         std::uint32_t params = 0;
         for (std::size_t i = 0; i < f.params.size(); i++) {
-            if (!isEntry && !use.params[i]) continue;
+            if (!use.isEntry && !use.params[i]) continue;
             param[i] = params;
             f.params[params++] = f.params[i];
         }
@@ -145,6 +159,8 @@ struct Pruner {
             if (use.results[i]) f.results[results++] = f.results[i];
         f.results.resize(results);
         instead.assign(f.exprs.size(), ExprId());
+        callOf.resize(std::max(callOf.size(), f.exprs.size()));
+        for (const Call& c : use.calls) callOf[c.expr] = c.callee;
         for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
             Expr& e = f.exprs[i];
             if (!use.live[i]) continue;
@@ -153,29 +169,26 @@ struct Pruner {
             if (e.op == Op::Param)
                 e.payload = param[e.payload];
             else if (e.op == Op::Call)
-                call(f, e);
+                call(f, e, uses[callOf[i]]);
             else if (e.op == Op::Result && f[f.operand(ExprId(i), 0)].op == Op::Call)
                 result(f, ExprId(i));
         }
         for (ResultValue& r : f.results)
             if (instead[r.value.index]) r.value = instead[r.value.index];
-        for (std::uint32_t c : use.calls)
-            if (auto merged = alias.find(Name(f.exprs[c].payload)); merged != alias.end())
-                f.exprs[c].payload = merged->second.index;
+        for (const Call& c : use.calls)
+            if (Name other = uses[c.callee].alias) f.exprs[c.expr].payload = other.index;
         compact(f);
         if (use.calls.size() > 1 && callsTwice(f)) unify(module, f);
     }
 
     // The callee is narrowed already, so its results and parameters are those that are left.
-    void call(Function& f, Expr& e) {
-        const Name name(e.payload);
-        const Use& use = uses[name];
-        const Function& callee = *module.findOwn(name);
+    static void call(Function& f, Expr& e, const Use& callee) {
         std::uint16_t kept = 0;
         for (std::uint32_t k = 0; k < e.operandCount; k++)
-            if (use.params[k]) f.operands[e.firstOperand + kept++] = f.operands[e.firstOperand + k];
+            if (callee.params[k]) f.operands[e.firstOperand + kept++] = f.operands[e.firstOperand + k];
         e.operandCount = kept;
-        e.type = callee.results.size() == 1 ? callee.results[0].type : Type::Tuple;
+        const std::vector<ResultValue>& results = callee.function->results;
+        e.type = results.size() == 1 ? results[0].type : Type::Tuple;
     }
 
     void result(Function& f, ExprId id) {
@@ -186,7 +199,7 @@ struct Pruner {
             if (!f.hints[of.index]) f.hints[of.index] = f.hints[id.index];
             return;
         }
-        const Use& use = uses[Name(f[of].payload)];
+        const Use& use = uses[callOf[of.index]];
         std::uint32_t k = 0;
         for (std::uint32_t i = 0; i < e.payload; i++) k += use.results[i];
         e.payload = k;
@@ -211,10 +224,10 @@ struct Pruner {
     }
 
     // What is left of two functions may be the same; then the later is an alias of the earlier.
-    bool mergedWithEarlier(const Function& f, const std::vector<Name>& earlier) {
+    bool mergedWithEarlier(Use& use, const std::vector<Name>& earlier) {
         for (Name name : earlier)
-            if (equal(*module.findOwn(name), f)) {
-                alias[f.name] = name;
+            if (equal(*uses[numbers[name]].function, *use.function)) {
+                use.alias = name;
                 return true;
             }
         return false;
@@ -242,22 +255,22 @@ struct Pruner {
 void prune(Module& module, std::span<const Name> entries) {
     Pruner p{module};
     for (Name e : entries) p.sort(e);
-    for (Name e : entries) p.uses[e].results.assign(module.findOwn(e)->results.size(), true);
-    for (std::size_t i = p.order.size(); i-- > 0;) p.mark(*p.order[i], true);
+    for (Name e : entries) {
+        Use& use = p.uses[p.numbers[e]];
+        use.isEntry = true;
+        use.results.assign(use.results.size(), true);
+    }
+    for (std::size_t i = p.order.size(); i-- > 0;) p.mark(p.uses[p.order[i]], true);
     do
-        for (Function* f : p.order) p.mark(*f, false);
-    while (p.forget(entries));
-    auto isEntry = [&](Name n) {
-        for (Name e : entries)
-            if (e == n) return true;
-        return false;
-    };
+        for (std::uint32_t n : p.order) p.mark(p.uses[n], false);
+    while (p.forget());
     std::vector<Name> names;
-    for (Function* f : p.order) {
-        const std::vector<char>& used = p.uses[f->name].results;
-        if (std::find(used.begin(), used.end(), true) == used.end()) continue;  // only dead calls led to it
-        p.narrow(*f, isEntry(f->name));
-        if (isEntry(f->name) || !p.mergedWithEarlier(*f, names)) names.push_back(f->name);
+    for (std::uint32_t n : p.order) {
+        Use& use = p.uses[n];
+        if (std::find(use.results.begin(), use.results.end(), true) == use.results.end())
+            continue;  // only dead calls led to it
+        p.narrow(use);
+        if (use.isEntry || !p.mergedWithEarlier(use, names)) names.push_back(use.function->name);
     }
     module.keepOnly(names);
 }

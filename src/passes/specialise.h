@@ -21,8 +21,14 @@ struct Specialisations {
     struct KeyHash {
         std::size_t operator()(const Key& key) const noexcept {
             std::uint64_t h = key.size();
-            for (std::uint32_t w : key) h = (h ^ w) * 0x9e3779b97f4a7c15ull;
-            return h ^ h >> 32;
+            auto mix = [&h](std::uint64_t word) {
+                h = (h ^ word) * 0x9e3779b97f4a7c15ull;
+                h ^= h >> 32;
+            };
+            std::size_t i = 0;
+            for (; i + 1 < key.size(); i += 2) mix(key[i] | std::uint64_t(key[i + 1]) << 32);
+            if (i < key.size()) mix(key[i]);
+            return h;
         }
     };
     struct Clone {

@@ -23,10 +23,8 @@ struct Reads {
     bool isMixed = false;  // an attribute is read with several numbers of components
 
     void add(const Function& f) {
-        std::vector<bool> live = reachable(f);
-        for (std::size_t i = 0; i < f.exprs.size(); i++) {
-            const Expr& e = f.exprs[i];
-            if (!live[i]) continue;
+        for (const Expr& e : f.exprs) {
+            if (e.op > Op::Uniform) continue;
             if (e.op == Op::Context) contexts[e.payload] = true;
             if (e.op == Op::Attribute) addAttribute(Name(e.payload), e.type);
             if (e.op == Op::Uniform) uniforms.insert(Name(e.payload));
@@ -63,10 +61,8 @@ void narrowReads(Module& module, Function& f, const Reads& reads) {
     Function fresh = headOf(f);
     Builder b(module, fresh);
     Copy copy(f, b);
-    const std::vector<bool> live = reachable(f);
     for (std::uint32_t i = 0; i < f.exprs.size(); i++) {
         const Expr& e = f.exprs[i];
-        if (!live[i]) continue;
         const Type carried = e.op == Op::Attribute ? reads.carried(Name(e.payload)) : e.type;
         const int n = componentCount(e.type);
         if (componentCount(carried) == n) {
@@ -77,6 +73,7 @@ void narrowReads(Module& module, Function& f, const Reads& reads) {
         copy.set(ExprId(i), b.convert(b.swizzle(whole, swizzleMask(n, 0, 1 % n, 2 % n)), e.type));
     }
     for (const ResultValue& r : f.results) b.addResult(r.name, copy[r.value]);
+    compact(fresh);
     f = std::move(fresh);
 }
 
@@ -159,6 +156,7 @@ ShaderInterface makeStages(Module& module, Name pixel, Name vertex) {
         b.addResult(name, b.attribute(name, type));
     }
 
+    compact(f);
     Reads vertexReads;
     vertexReads.add(f);
     made.vertexUniforms = vertexReads.stage(module);

@@ -1,6 +1,8 @@
 #include "targets/text/namer.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 
 namespace shaderx::text {
 
@@ -10,16 +12,17 @@ std::size_t NameSet::slotOf(std::string_view name, std::uint32_t hash) const {
     return i;
 }
 
-void NameSet::insert(std::string_view name, std::uint32_t hash) {
+bool NameSet::insert(std::string_view name, std::uint32_t hash) {
     if (at_.size() * 2 >= slots_.size()) {
         slots_.assign(std::max<std::size_t>(64, slots_.size() * 2), 0);
         for (std::uint32_t k = 0; k < at_.size(); k++) slots_[slotOf(text(k), hashText(text(k)))] = k + 1;
     }
     std::uint32_t& slot = slots_[slotOf(name, hash)];
-    if (slot) return;
+    if (slot) return false;
     at_.emplace_back(static_cast<std::uint32_t>(text_.size()), static_cast<std::uint32_t>(name.size()));
     text_ += name;
     slot = static_cast<std::uint32_t>(at_.size());
+    return true;
 }
 
 void NameSet::clear() {
@@ -29,55 +32,64 @@ void NameSet::clear() {
     text_.clear();
 }
 
-static bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-static bool isDigit(char c) { return c >= '0' && c <= '9'; }
+static constexpr std::size_t kLongest = 200;  // letters of a name, well below every language's limit
+
+// What a character may be in a name.
+enum CharacterClass : std::uint8_t { kOther, kLetter, kDigit, kUnderscore };
+static constexpr std::array<CharacterClass, 256> kClasses = [] {
+    std::array<CharacterClass, 256> classes{};
+    for (int c = 'a'; c <= 'z'; c++) classes[static_cast<std::size_t>(c)] = kLetter;
+    for (int c = 'A'; c <= 'Z'; c++) classes[static_cast<std::size_t>(c)] = kLetter;
+    for (int c = '0'; c <= '9'; c++) classes[static_cast<std::size_t>(c)] = kDigit;
+    classes['_'] = kUnderscore;
+    return classes;
+}();
+static CharacterClass classOf(char c) { return kClasses[static_cast<unsigned char>(c)]; }
 
 // Whether a text is a name as it stands, as most are.
 static bool isIdentifier(std::string_view text) {
-    if (text.empty() || text == "_" || isDigit(text[0])) return false;
-    char before = 'a';
+    if (text.empty() || text.size() > kLongest || text == "_" || classOf(text[0]) == kDigit) return false;
+    CharacterClass before = kLetter;
     for (char c : text) {
-        if (!isLetter(c) && !isDigit(c) && (c != '_' || before == '_')) return false;
-        before = c;
+        const CharacterClass now = classOf(c);
+        if (now == kOther || (now == kUnderscore && before == kUnderscore)) return false;
+        before = now;
     }
     return true;
 }
 
 std::string identifier(std::string_view text) {
-    constexpr std::size_t kLongest = 200;  // well below every language's limit
     text = text.substr(0, kLongest);
     if (isIdentifier(text)) return std::string(text);
     std::string out;
     for (char c : text) {
-        bool letter = isLetter(c), digit = isDigit(c);
-        if (!letter && !digit) c = '_';
-        if (digit && out.empty()) out = "n";
+        if (classOf(c) == kOther) c = '_';
+        if (classOf(c) == kDigit && out.empty()) out = "n";
         if (c == '_' && !out.empty() && out.back() == '_') continue;
         out += c;
     }
     return out.empty() || out == "_" ? "v" : out;
 }
 
-bool Namer::taken(std::string_view name, std::uint32_t hash) {
-    const bool isGlobal = global_.contains(name, hash);
-    gaveWay_ = gaveWay_ || isGlobal;
-    return isGlobal || reserved_.contains(name, hash) || name.starts_with("gl_") || local_.contains(name, hash);
+bool Namer::take(std::string_view name, NameSet& set) {
+    const std::uint32_t hash = hashText(name);
+    if (name.starts_with("gl_") || reserved_.contains(name, hash)) return false;
+    if (&set == &global_) return !local_.contains(name, hash) && global_.insert(name, hash);
+    if (!global_.contains(name, hash)) return local_.insert(name, hash);
+    gaveWay_ = true;
+    return false;
 }
 
 std::string Namer::fresh(std::string_view wanted, NameSet& set) {
+    if (isIdentifier(wanted) && take(wanted, set)) return std::string(wanted);
     std::string stem = identifier(wanted);
     if (stem.starts_with("gl_")) stem = "v_" + stem.substr(3);
     std::string name = stem;
-    std::uint32_t hash = hashText(name);
-    if (taken(name, hash)) {
-        if (stem.back() >= '0' && stem.back() <= '9') stem += '_';
-        int& next = next_.try_emplace(stem, 2).first->second;
-        do {
-            name = stem + std::to_string(next++);
-            hash = hashText(name);
-        } while (taken(name, hash));
-    }
-    set.insert(name, hash);
+    if (take(name, set)) return name;
+    if (classOf(stem.back()) == kDigit) stem += '_';
+    int& next = next_.try_emplace(stem, 2).first->second;
+    do name = stem + std::to_string(next++);
+    while (!take(name, set));
     return name;
 }
 

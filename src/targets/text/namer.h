@@ -45,7 +45,8 @@ class NameSet {
     bool contains(std::string_view name, std::uint32_t hash) const {
         return !slots_.empty() && slots_[slotOf(name, hash)] != 0;
     }
-    void insert(std::string_view name, std::uint32_t hash);
+    // False if it was there.
+    bool insert(std::string_view name, std::uint32_t hash);
     void clear();
     std::size_t size() const { return at_.size(); }
     std::string_view operator[](std::size_t k) const { return text(k); }
@@ -79,7 +80,8 @@ class Namer {
     std::string local(std::string_view wanted);
 
   private:
-    bool taken(std::string_view name, std::uint32_t hash);
+    // Puts a name into one of the sets; false where it is taken.
+    bool take(std::string_view name, NameSet& set);
     std::string fresh(std::string_view wanted, NameSet& set);
 
     ReservedWords reserved_;
