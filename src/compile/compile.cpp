@@ -326,7 +326,7 @@ struct Compilation {
         return true;
     }
 
-    void legalise(ir::Function& f) { glsl::legalise(module, f); }
+    void legalise(ir::Function& f) { glsl::legalise(f); }
 
     void place(ir::Function& f) {
         passes::PlaceOptions how;

@@ -333,6 +333,16 @@ static void moveOrigins(Function& f, std::span<const std::uint32_t> at) {
     f.origins = std::move(moved);
 }
 
+// Whether two expressions of one function are the same operation on the same operands.
+static bool isSame(const Function& f, const Expr& a, const Expr& b) {
+    if (head(a.op, a.type, a.operandCount) != head(b.op, b.type, b.operandCount)) return false;
+    if (hasWords(a))
+        return std::equal(f.words.begin() + a.payload, f.words.begin() + a.payload + componentCount(a.type),
+                          f.words.begin() + b.payload);
+    const ExprId *x = f.operands.data() + a.firstOperand, *y = f.operands.data() + b.firstOperand;
+    return a.payload == b.payload && std::equal(x, x + a.operandCount, y);
+}
+
 void compact(Function& f) {
     constexpr std::uint32_t kDead = ExprId::kNone;
     const std::size_t n = f.exprs.size();
@@ -371,6 +381,31 @@ void compact(Function& f) {
     f.operands.resize(operands);
     f.words.resize(words);
     for (ResultValue& r : f.results) r.value = ExprId(at[r.value.index]);
+}
+
+void unify(Function& f) {
+    const std::size_t n = f.exprs.size();
+    std::vector<std::uint32_t> slots(std::bit_ceil(std::max<std::size_t>(32, n * 2 + 2)));  // as the builder's
+    std::vector<ExprId> first(n);
+    const std::uint32_t mask = static_cast<std::uint32_t>(slots.size()) - 1;
+    bool repeats = false;
+    for (std::uint32_t i = 0; i < n; i++) {
+        Expr& e = f.exprs[i];
+        ExprId* operands = f.operands.data() + e.firstOperand;
+        for (std::uint32_t k = 0; repeats && k < e.operandCount; k++) operands[k] = first[operands[k].index];
+        const std::uint32_t hash =
+            hasWords(e) ? hashConstant(e.type, f.constantWords(ExprId(i))) : hashExpr(e, f.operandsOf(e));
+        std::uint32_t slot = hash & mask;
+        while (slots[slot] && !isSame(f, f.exprs[slots[slot] - 1], e)) slot = (slot + 1) & mask;
+        if (!slots[slot]) slots[slot] = i + 1;
+        first[i] = ExprId(slots[slot] - 1);
+        if (first[i].index == i) continue;
+        repeats = true;
+        if (Name& hint = f.hints[first[i].index]; !hint) hint = f.hints[i];
+    }
+    if (!repeats) return;
+    for (ResultValue& r : f.results) r.value = first[r.value.index];
+    compact(f);
 }
 
 }  // namespace shaderx::ir

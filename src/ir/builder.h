@@ -97,4 +97,7 @@ std::vector<bool> reachable(const Function& f);
 // Drops what the results do not need; the others keep their order. The function must not have been placed.
 void compact(Function& f);
 
+// Makes equal expressions one again, after a pass that took out what told them apart, and drops what nothing needs.
+void unify(Function& f);
+
 }  // namespace shaderx::ir

@@ -57,17 +57,6 @@ Function headOf(const Function& f) {
     return head;
 }
 
-void unify(Module& module, Function& f) {
-    Function fresh = headOf(f);
-    Builder b(module, fresh);
-    b.reserve(f.exprs.size());
-    Copy copy(f, b);
-    for (std::uint32_t i = 0; i < f.exprs.size(); i++) copy.raw(ExprId(i));
-    for (const ResultValue& r : f.results) b.addResult(r.name, copy[r.value]);
-    compact(fresh);
-    f = std::move(fresh);
-}
-
 void Appender::reserve(const Function& like) {
     f_.exprs.reserve(like.exprs.size());
     f_.hints.reserve(like.exprs.size());

@@ -42,9 +42,6 @@ class Copy {
 // What a function is called with and as, to build its expressions anew.
 ir::Function headOf(const ir::Function& function);
 
-// Makes equal expressions of a function one again, and drops what nothing needs.
-void unify(ir::Module& module, ir::Function& function);
-
 // Appends expressions as they are, by no rules: for passes that leave nothing to simplify. Equal ones are not one.
 class Appender {
   public:

@@ -178,7 +178,7 @@ struct Pruner {
         for (const Call& c : use.calls)
             if (Name other = uses[c.callee].alias) f.exprs[c.expr].payload = other.index;
         compact(f);
-        if (use.calls.size() > 1 && callsTwice(f)) unify(module, f);
+        if (use.calls.size() > 1 && callsTwice(f)) unify(f);
     }
 
     // The callee is narrowed already, so its results and parameters are those that are left.

@@ -428,7 +428,7 @@ struct Checker::State {
             if (!passes::specialise(m, pixel, baked, d)) return reason = d.text(), false;
             passes::prune(m, std::array{pixel});
             interface = passes::makeStages(m, pixel, vertex);
-            for (auto& f : m.functions) glsl::legalise(m, *f);
+            for (auto& f : m.functions) glsl::legalise(*f);
             for (auto& f : m.functions) {
                 passes::PlaceOptions how;
                 how.isEntry = f->name == pixel;

@@ -15,7 +15,7 @@ namespace shaderx::glsl {
 
 // Rewrites a function into what the language can say: scalars are spread over vectors where its built-in functions take
 // no scalar, roles of vectors are dropped, `known` is false. To be followed by `place`.
-void legalise(ir::Module& module, ir::Function& function);
+void legalise(ir::Function& function);
 
 struct Sources {
     std::string vertex, pixel;

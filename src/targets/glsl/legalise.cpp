@@ -169,11 +169,11 @@ struct Legaliser {
 
 }  // namespace
 
-void legalise(Module& module, Function& function) {
+void legalise(Function& function) {
     Legaliser l{function};
     l.run();
     function = std::move(l.fresh);
-    if (l.mayRepeat) passes::unify(module, function);
+    if (l.mayRepeat) unify(function);
 }
 
 }  // namespace shaderx::glsl

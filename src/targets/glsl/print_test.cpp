@@ -27,7 +27,7 @@ bool haveCompiler() { return std::system("command -v glslangValidator >/dev/null
 
 // All functions of a module.
 void legaliseAll(Module& module) {
-    for (auto& f : module.functions) legalise(module, *f);
+    for (auto& f : module.functions) legalise(*f);
 }
 
 // What the compiler says against a text, empty where it takes it.

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::expect(passes::specialise(t.module, t.entry, {}, diagnostics), diagnostics.text() + t.before);
     passes::prune(t.module, std::array{t.entry});
     const passes::ShaderInterface interface = passes::makeStages(t.module, t.entry, t.names.intern("@vertex"));
-    for (auto& f : t.module.functions) glsl::legalise(t.module, *f);
+    for (auto& f : t.module.functions) glsl::legalise(*f);
     // Roles of vectors go with it: the numbers are what stays.
     for (std::vector<ir::Value>& results : t.wanted)
         for (ir::Value& v : results) v.type = ir::Type::Vector4;
