@@ -36,7 +36,10 @@ static std::uint32_t hashConstant(Type type, std::span<const std::uint32_t> word
 
 static inline std::uint32_t hashExpr(const Expr& e, std::span<const ExprId> operands) {
     std::uint64_t h = mix(head(e.op, e.type, operands.size()), e.payload);
-    for (ExprId o : operands) h = mix(h ^ h >> 32, o.index);
+    std::size_t k = 0;
+    for (; k + 1 < operands.size(); k += 2)
+        h = mix(h ^ h >> 32, operands[k].index | std::uint64_t(operands[k + 1].index) << 32);
+    if (k < operands.size()) h = mix(h ^ h >> 32, operands[k].index);
     return finish(h);
 }
 
@@ -62,7 +65,7 @@ void Builder::grow(std::size_t expressions) {
     }
 }
 
-ExprId Builder::append(const Expr& e, std::uint32_t slot) {
+inline ExprId Builder::append(const Expr& e, std::uint32_t slot) {
     f_.exprs.push_back(e);
     f_.hints.emplace_back();
     slots_[slot] = static_cast<std::uint32_t>(f_.exprs.size());
@@ -70,9 +73,15 @@ ExprId Builder::append(const Expr& e, std::uint32_t slot) {
 }
 
 ExprId Builder::intern(const Expr& key, std::span<const ExprId> operands) {
-    if (f_.exprs.size() * 2 >= slots_.size()) grow(f_.exprs.size() * 2);
-    const std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1;
     const std::size_t n = operands.size();
+    if (f_.exprs.size() * 2 >= slots_.size() || f_.operands.capacity() - f_.operands.size() < n) {
+        // The operands may lie in the very array that grows.
+        const std::vector<ExprId> kept(operands.begin(), operands.end());
+        if (f_.exprs.size() * 2 >= slots_.size()) grow(f_.exprs.size() * 2);
+        f_.operands.reserve(2 * f_.operands.capacity() + n);
+        return intern(key, kept);
+    }
+    const std::uint32_t mask = static_cast<std::uint32_t>(slots_.size()) - 1;
     std::uint32_t i = hashExpr(key, operands) & mask;
     for (; slots_[i]; i = (i + 1) & mask) {
         const Expr& e = f_.exprs[slots_[i] - 1];
@@ -86,14 +95,7 @@ ExprId Builder::intern(const Expr& key, std::span<const ExprId> operands) {
     e.operandCount = static_cast<std::uint16_t>(n);
     ensure(e.operandCount == n, "too many operands");
     e.firstOperand = static_cast<std::uint32_t>(f_.operands.size());
-    // The operands may lie in the very array that grows.
-    const bool own =
-        n && operands.data() >= f_.operands.data() && operands.data() < f_.operands.data() + f_.operands.size();
-    const std::size_t at = own ? static_cast<std::size_t>(operands.data() - f_.operands.data()) : 0;
-    for (std::size_t k = 0; k < n; k++) {
-        const ExprId o = own ? f_.operands[at + k] : operands[k];
-        f_.operands.push_back(o);
-    }
+    for (ExprId o : operands) f_.operands.push_back(o);
     return append(e, i);
 }
 

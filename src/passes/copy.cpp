@@ -1,18 +1,20 @@
 #include "passes/copy.h"
 
-#include <array>
-
 namespace shaderx::passes {
 
 using namespace ir;
-
-static constexpr std::size_t kFew = 4;  // operands, for which no memory is asked
 
 std::span<const ExprId> Copy::operands(ExprId e) {
     std::span<const ExprId> from = from_.operandsOf(e);
     if (operands_.size() < from.size()) operands_.resize(from.size());
     for (std::size_t k = 0; k < from.size(); k++) operands_[k] = map_[from[k].index];
     return {operands_.data(), from.size()};
+}
+
+inline std::span<const ExprId> Copy::fewOperands(const Expr& e, std::array<ExprId, kFew>& few) const {
+    const ExprId* from = from_.operands.data() + e.firstOperand;
+    for (std::uint32_t k = 0; k < e.operandCount; k++) few[k] = map_[from[k].index];
+    return {few.data(), e.operandCount};
 }
 
 ExprId Copy::one(ExprId id, Type type) {
@@ -26,9 +28,7 @@ ExprId Copy::one(ExprId id, Type type) {
         made = to_.constant(type, from_.constantWords(id));
     } else if (e.operandCount <= kFew) {
         std::array<ExprId, kFew> few;
-        const ExprId* from = from_.operands.data() + e.firstOperand;
-        for (std::uint32_t k = 0; k < e.operandCount; k++) few[k] = map_[from[k].index];
-        made = to_.emit(e.op, type, std::span<const ExprId>(few.data(), e.operandCount), payload);
+        made = to_.emit(e.op, type, fewOperands(e, few), payload);
     } else {
         made = to_.emit(e.op, type, operands(id), payload);
     }
@@ -42,7 +42,13 @@ ExprId Copy::raw(ExprId id) {
     const Expr& e = from_[id];
     const bool isLoop = e.op == Op::LoopArg || e.op == Op::Loop || e.op == Op::Lights;
     if (isLoop || (e.op == Op::Constant && componentCount(e.type))) return one(id);
-    ExprId made = to_.emitRaw(e.op, e.type, operands(id), e.payload);
+    ExprId made;
+    if (e.operandCount <= kFew) {
+        std::array<ExprId, kFew> few;
+        made = to_.emitRaw(e.op, e.type, fewOperands(e, few), e.payload);
+    } else {
+        made = to_.emitRaw(e.op, e.type, operands(id), e.payload);
+    }
     map_[id.index] = made;
     if (from_.hints[id.index]) to_.hint(made, from_.hints[id.index]);
     return made;

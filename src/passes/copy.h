@@ -1,6 +1,7 @@
 // Copies a function's expressions into another function, which simplifies them on the way.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <vector>
 
@@ -32,6 +33,9 @@ class Copy {
     ir::ExprId raw(ir::ExprId e);
 
   private:
+    static constexpr std::size_t kFew = 4;  // operands, for which no memory is asked
+    std::span<const ir::ExprId> fewOperands(const ir::Expr& e, std::array<ir::ExprId, kFew>& few) const;
+
     const ir::Function& from_;
     ir::Builder& to_;
     std::uint32_t loopBase_;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <deque>
+#include <string>
 #include <unordered_map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -188,11 +190,12 @@ struct Specialiser {
         Name& name = placed[clone.function.name];
         if (name) return name;
         std::string_view stem = module.names->text(clone.stem);
-        stem = stem.substr(0, stem.find('@'));
-        int number = 0;
+        std::string numbered(stem.substr(0, stem.find('@')));
+        numbered += '@';
+        const std::size_t end = numbered.size();
         Name fresh;
-        do fresh = module.names->intern(fmt::format("{}@{}", stem, number++));
-        while (module.findOwn(fresh));
+        for (int number = 0; !fresh || module.findOwn(fresh); number++)
+            fresh = module.names->intern(numbered.replace(end, std::string::npos, std::to_string(number)));
         name = fresh;
         known[fresh] = clone.key;
         Function copy = clone.function;
@@ -436,11 +439,15 @@ struct Specialiser {
     struct Summary {
         std::vector<Name> calls;  // of each call, the callee
         std::size_t work = 0;     // operations of its own, a call being one
+        std::size_t total = 0;    // with all that it calls, as it was when `instead` had so many entries less one
+        std::size_t totalAt = 0;
+        std::size_t visit = 0;  // the walk that came by last
     };
+    std::size_t visits = 0;
     std::unordered_map<Name, Summary> summaries{};
     std::unordered_map<Name, Name> instead{};  // of clones, those that serve for them
 
-    const Summary& summaryOf(Name name) {
+    Summary& summaryOf(Name name) {
         auto [found, isNew] = summaries.try_emplace(name);
         Summary& s = found->second;
         if (!isNew) return s;
@@ -459,57 +466,68 @@ struct Specialiser {
     // Clones of one function that do the same work on different numbers become one that takes the numbers: less text
     // for the same speed.
     void share(Name entry) {
-        std::vector<Name> live = liveClones(entry);
+        if (known.size() < 2) return;
+        std::vector<LiveClone> live = liveClones(entry);
         constexpr std::size_t kMostShared = 256;  // each is compared with each: beyond, the text may be longer
         if (live.size() < 2 || live.size() > kMostShared) return;
         while (sharesTwo(live)) live = liveClones(entry);
         if (instead.empty()) return;
-        live.push_back(entry);
-        for (Name n : live) redirect(*module.findOwn(n));
+        redirect(*module.findOwn(entry));
+        for (const LiveClone& c : live) redirect(*module.findOwn(c.name));
     }
 
+    struct LiveClone {
+        Name name;
+        const Key* key;
+    };
+
     // True if two of them did; then others may.
-    bool sharesTwo(const std::vector<Name>& live) {
+    bool sharesTwo(const std::vector<LiveClone>& live) {
         for (std::size_t i = 0; i < live.size(); i++)
             for (std::size_t j = i + 1; j < live.size(); j++)
-                if (mergedBoth(live[i], live[j])) return true;
+                if ((*live[i].key)[0] == (*live[j].key)[0] && mergedBoth(live[i], live[j])) return true;
         return false;
     }
 
-    bool mergedBoth(Name x, Name y) {
+    bool mergedBoth(const LiveClone& x, const LiveClone& y) {
         if (frames.empty()) frames.emplace_back();
-        if (!haveCommon(*known[x], *known[y], frames[0].key)) return false;
+        if (!haveCommon(*x.key, *y.key, frames[0].key)) return false;
         const Function* callee = module.find(Name(frames[0].key[0]));
         depth = 1;
         const Clone& common = clone(*callee, frames[0]);
         depth = 0;
         if (!common.function.name) return false;
         const Name merged = placeOne(common);
-        const std::size_t apart = std::min(workOf(x), workOf(y));
+        const std::size_t apart = std::min(workOf(x.name), workOf(y.name));
         if (workOf(merged) > apart + apart / 8 + 2) return false;
-        if (x != merged) instead[x] = merged;
-        if (y != merged) instead[y] = merged;
+        if (x.name != merged) instead[x.name] = merged;
+        if (y.name != merged) instead[y.name] = merged;
         return true;
     }
 
     // The clones that the entry reaches, callers before callees.
-    std::vector<Name> liveClones(Name entry) {
-        std::vector<Name> order{entry}, found;
-        for (std::size_t i = 0; i < order.size(); i++)
-            for (Name callee : summaryOf(order[i]).calls)
-                if (callee = resolved(callee); std::find(order.begin(), order.end(), callee) == order.end())
-                    order.push_back(callee);
-        for (Name n : order)
-            if (known.count(n)) found.push_back(n);
+    std::vector<LiveClone> liveClones(Name entry) {
+        visits++;
+        std::vector<LiveClone> found;
+        std::vector<Name> order{entry};
+        for (std::size_t i = 0; i < order.size(); i++) {
+            if (auto clone = known.find(order[i]); clone != known.end()) found.push_back({order[i], clone->second});
+            for (Name callee : summaryOf(order[i]).calls) {
+                callee = resolved(callee);
+                if (std::exchange(summaryOf(callee).visit, visits) != visits) order.push_back(callee);
+            }
+        }
         return found;
     }
 
     // Operations of a function with all that it calls.
     std::size_t workOf(Name name) {
-        const Summary& s = summaryOf(name);
+        Summary& s = summaryOf(name);
+        if (s.totalAt == instead.size() + 1) return s.total;
         std::size_t work = s.work;
         for (Name callee : s.calls) work += workOf(resolved(callee));
-        return work;
+        s.totalAt = instead.size() + 1;
+        return s.total = work;
     }
 
     // The arguments under which one clone serves both: what differs in numbers is taken as a parameter.
