@@ -27,6 +27,7 @@ struct Use {
     std::size_t sorted = 0;  // expressions that were asked for calls
     bool isEntry = false;
     bool isStale = true;      // other results are needed than when it was marked
+    bool readsLess = false;   // fewer parameters than its callers knew
     bool isNarrowed = false;  // results or parameters go
     Name alias{};             // an earlier function that is the same
 };
@@ -68,12 +69,18 @@ struct Pruner {
         }
     }
 
-    // What the needed results of a function need. Before the callees' parameters are known (`first`), every argument
-    // counts as read, and the callees learn which of their results are.
-    void mark(Use& use, bool first) {
-        if (!use.isStale && use.calls.empty()) return;
+    // What the needed results of a function need. In round 0, before the callees' parameters are known, every argument
+    // counts as read, and the callees learn which of their results are. In later ones callees come first.
+    void mark(Use& use, int round) {
+        const bool first = round == 0;
+        auto changed = [&](const Call& c) { return uses[c.callee].readsLess; };
+        if (!use.isStale && std::none_of(use.calls.begin(), use.calls.end(), changed)) {
+            use.readsLess = round == 1 && hasFalse(use.params);
+            return;
+        }
         const Function& f = *use.function;
         use.isStale = false;
+        const std::vector<char> before = round > 1 ? use.params : std::vector<char>();
         use.live.assign(f.exprs.size(), false);
         use.params.assign(f.params.size(), false);
         for (std::size_t i = 0; i < f.results.size(); i++)
@@ -94,6 +101,7 @@ struct Pruner {
             for (std::size_t k = 0; k < e.operandCount; k++) live[operands[k].index] = true;
             if (e.op == Op::Param) use.params[e.payload] = true;
         }
+        use.readsLess = round == 1 ? hasFalse(use.params) : round > 1 && use.params != before;
         if (first) read(use, [&](std::uint32_t callee, std::uint32_t k) { uses[callee].results[k] = true; });
     }
 
@@ -260,10 +268,12 @@ void prune(Module& module, std::span<const Name> entries) {
         use.isEntry = true;
         use.results.assign(use.results.size(), true);
     }
-    for (std::size_t i = p.order.size(); i-- > 0;) p.mark(p.uses[p.order[i]], true);
-    do
-        for (std::uint32_t n : p.order) p.mark(p.uses[n], false);
-    while (p.forget());
+    for (std::size_t i = p.order.size(); i-- > 0;) p.mark(p.uses[p.order[i]], 0);
+    int round = 1;
+    do {
+        for (std::uint32_t n : p.order) p.mark(p.uses[n], round);
+        round++;
+    } while (p.forget());
     std::vector<Name> names;
     for (std::uint32_t n : p.order) {
         Use& use = p.uses[n];

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
+#include <iterator>
 
 namespace shaderx::text {
 
@@ -12,17 +14,17 @@ std::size_t NameSet::slotOf(std::string_view name, std::uint32_t hash) const {
     return i;
 }
 
-bool NameSet::insert(std::string_view name, std::uint32_t hash) {
+std::pair<std::size_t, bool> NameSet::insert(std::string_view name, std::uint32_t hash) {
     if (at_.size() * 2 >= slots_.size()) {
         slots_.assign(std::max<std::size_t>(64, slots_.size() * 2), 0);
         for (std::uint32_t k = 0; k < at_.size(); k++) slots_[slotOf(text(k), hashText(text(k)))] = k + 1;
     }
     std::uint32_t& slot = slots_[slotOf(name, hash)];
-    if (slot) return false;
+    if (slot) return {slot - 1, false};
     at_.emplace_back(static_cast<std::uint32_t>(text_.size()), static_cast<std::uint32_t>(name.size()));
     text_ += name;
     slot = static_cast<std::uint32_t>(at_.size());
-    return true;
+    return {slot - 1, true};
 }
 
 void NameSet::clear() {
@@ -74,22 +76,30 @@ std::string identifier(std::string_view text) {
 bool Namer::take(std::string_view name, NameSet& set) {
     const std::uint32_t hash = hashText(name);
     if (name.starts_with("gl_") || reserved_.contains(name, hash)) return false;
-    if (&set == &global_) return !local_.contains(name, hash) && global_.insert(name, hash);
-    if (!global_.contains(name, hash)) return local_.insert(name, hash);
+    if (&set == &global_) return !local_.contains(name, hash) && global_.insert(name, hash).second;
+    if (!global_.contains(name, hash)) return local_.insert(name, hash).second;
     gaveWay_ = true;
     return false;
 }
 
 std::string Namer::fresh(std::string_view wanted, NameSet& set) {
-    if (isIdentifier(wanted) && take(wanted, set)) return std::string(wanted);
-    std::string stem = identifier(wanted);
-    if (stem.starts_with("gl_")) stem = "v_" + stem.substr(3);
-    std::string name = stem;
-    if (take(name, set)) return name;
-    if (classOf(stem.back()) == kDigit) stem += '_';
-    int& next = next_.try_emplace(stem, 2).first->second;
-    do name = stem + std::to_string(next++);
-    while (!take(name, set));
+    bool isTried = isIdentifier(wanted);
+    if (isTried && take(wanted, set)) return std::string(wanted);
+    std::string name = isTried ? std::string(wanted) : identifier(wanted);
+    if (name.starts_with("gl_")) {
+        name.replace(0, 2, "v");
+        isTried = false;
+    }
+    if (!isTried && take(name, set)) return name;
+    if (classOf(name.back()) == kDigit) name += '_';
+    const std::size_t stem = name.size();
+    const std::size_t known = numbered_.insert(name, hashText(name)).first;
+    if (known == next_.size()) next_.push_back(2);
+    do {
+        char digits[12];
+        name.resize(stem);
+        name.append(digits, std::to_chars(digits, std::end(digits), next_[known]++).ptr);
+    } while (!take(name, set));
     return name;
 }
 

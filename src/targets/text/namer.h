@@ -7,7 +7,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -45,8 +44,8 @@ class NameSet {
     bool contains(std::string_view name, std::uint32_t hash) const {
         return !slots_.empty() && slots_[slotOf(name, hash)] != 0;
     }
-    // False if it was there.
-    bool insert(std::string_view name, std::uint32_t hash);
+    // The number of the name, and whether it is new.
+    std::pair<std::size_t, bool> insert(std::string_view name, std::uint32_t hash);
     void clear();
     std::size_t size() const { return at_.size(); }
     std::string_view operator[](std::size_t k) const { return text(k); }
@@ -69,6 +68,7 @@ class Namer {
     // Forgets the local names of the function before.
     void enterFunction() {
         local_.clear();
+        numbered_.clear();
         next_.clear();
         gaveWay_ = false;
     }
@@ -87,7 +87,8 @@ class Namer {
     ReservedWords reserved_;
     NameSet global_, local_;
     bool gaveWay_ = false;
-    std::unordered_map<std::string, int> next_;  // number to try next, by name
+    NameSet numbered_;       // names that were taken
+    std::vector<int> next_;  // of these, the number to try next
 };
 
 // `text` with everything that can't stand in a name replaced by '_', runs of '_' made one; "v" if nothing is left.
