@@ -3,35 +3,38 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 
 #include <fmt/format.h>
 
+#include "base/names.h"
 #include "base/numbers.h"
 
 namespace shaderx {
 
-void JsonWriter::begin() {
+char* JsonWriter::begin(std::size_t characters) {
     if (keyed_) {
         keyed_ = false;
-        return;
+        return room(characters);
     }
-    const bool lines = lines_ >> depth_ & 1;
-    if (!first_) lines ? put(',') : put(", ");
-    if (lines) newLine();
-    first_ = false;
-}
-
-void JsonWriter::newLine() {
     const std::size_t indent = static_cast<std::size_t>(depth_) * 2;
-    char* to = room(indent + 1);
-    *to = '\n';
-    std::fill_n(to + 1, indent, ' ');
-    size_ += indent + 1;
+    const bool lines = lines_ >> depth_ & 1;
+    char* to = room(characters + indent + 2);
+    if (!first_) *to++ = ',';
+    if (lines) {
+        *to++ = '\n';
+        to = std::fill_n(to, indent, ' ');
+    } else if (!first_) {
+        *to++ = ' ';
+    }
+    first_ = false;
+    return to;
 }
 
 void JsonWriter::open(char bracket, bool lines) {
-    begin();
-    put(bracket);
+    char* to = begin(1);
+    *to++ = bracket;
+    end(to);
     depth_++;
     lines_ = (lines_ & ~(std::uint64_t(1) << depth_)) | std::uint64_t(lines) << depth_;
     first_ = true;
@@ -40,37 +43,42 @@ void JsonWriter::open(char bracket, bool lines) {
 void JsonWriter::close(char bracket) {
     const bool lines = lines_ >> depth_ & 1;
     depth_--;
-    if (lines && !first_) newLine();
-    put(bracket);
-    if (depth_ == 0) put('\n');
+    const std::size_t indent = static_cast<std::size_t>(depth_) * 2;
+    char* to = room(indent + 3);
+    if (lines && !first_) {
+        *to++ = '\n';
+        to = std::fill_n(to, indent, ' ');
+    }
+    *to++ = bracket;
+    if (depth_ == 0) *to++ = '\n';
+    end(to);
     first_ = false;
 }
 
 void JsonWriter::key(std::string_view name) {
-    begin();
-    put('"');
-    put(name);
-    put("\": ");
+    char* to = begin(name.size() + 4);
+    *to++ = '"';
+    to = std::copy(name.begin(), name.end(), to);
+    for (char c : {'"', ':', ' '}) *to++ = c;
+    end(to);
     keyed_ = true;
 }
 
-void JsonWriter::text(std::string_view value) {
-    begin();
-    quoted(value);
+void JsonWriter::word(std::string_view text) {
+    char* to = begin(text.size());
+    end(std::copy(text.begin(), text.end(), to));
 }
 
 void JsonWriter::integer(std::int64_t value) {
-    begin();
     constexpr std::size_t kLongest = 24;
-    char* to = room(kLongest);
-    size_ += static_cast<std::size_t>(std::to_chars(to, to + kLongest, value).ptr - to);
+    char* to = begin(kLongest);
+    end(std::to_chars(to, to + kLongest, value).ptr);
 }
 
 void JsonWriter::number(float value) {
     if (!std::isfinite(value)) return null();
     if (std::abs(value) < 1e6f && value == std::trunc(value)) return integer(static_cast<std::int64_t>(value));
-    begin();
-    put(formatFloat(value));
+    word(formatFloat(value));
 }
 
 // Bytes of the UTF-8 character at the start of a text, 0 where it is none (RFC 3629, section 4).
@@ -89,32 +97,43 @@ static std::size_t characterLength(std::string_view text) {
     return 0;
 }
 
-void JsonWriter::quoted(std::string_view text) {
-    put('"');
-    for (std::size_t i = 0; i < text.size();) {
-        auto isPlain = [](char c) { return c >= ' ' && c < 0x7f && c != '"' && c != '\\'; };
-        char* to = room(text.size() - i);
-        const std::size_t plain = i;
-        for (; i < text.size() && isPlain(text[i]); i++) *to++ = text[i];
-        size_ += i - plain;
-        if (i == text.size()) break;
-        char c = text[i];
+static bool isPlain(char c) { return c >= ' ' && c < 0x7f && c != '"' && c != '\\'; }
+
+// Whether eight characters stand for themselves: a byte of a sum below has its highest bit where one does not (Warren,
+// Hacker's Delight, section 6-1). A carry may tell it of a plain one too.
+static bool arePlain(std::uint64_t eight) {
+    constexpr std::uint64_t kEach = 0x0101010101010101u;
+    auto isZero = [](std::uint64_t bytes) { return bytes - kEach; };
+    const std::uint64_t low = eight - kEach * ' ', high = eight + kEach, quote = isZero(eight ^ kEach * '"'),
+                        slash = isZero(eight ^ kEach * '\\');
+    return !((eight | low | high | quote | slash) & kEach << 7);
+}
+
+void JsonWriter::text(std::string_view value) {
+    constexpr std::size_t kLongest = 6;  // of what stands for one byte
+    char* to = begin(kLongest * value.size() + 2);
+    *to++ = '"';
+    for (std::size_t i = 0; i < value.size();) {
+        for (; i + 8 <= value.size() && arePlain(loadText<std::uint64_t>(value.data() + i)); i += 8, to += 8)
+            std::memcpy(to, value.data() + i, 8);
+        for (; i < value.size() && isPlain(value[i]); i++) *to++ = value[i];
+        if (i == value.size()) break;
+        const char c = value[i];
+        const std::size_t n = characterLength(value.substr(i));
         if (c == '"' || c == '\\') {
-            put('\\');
-            put(c);
-            i++;
+            *to++ = '\\';
+            *to++ = c;
         } else if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) {
-            put(fmt::format("\\u{:04x}", static_cast<unsigned>(c)));
-            i++;
-        } else if (std::size_t n = characterLength(text.substr(i))) {
-            put(text.substr(i, n));
-            i += n;
+            to = fmt::format_to(to, "\\u{:04x}", static_cast<unsigned>(c));
+        } else if (n) {
+            to = std::copy_n(value.data() + i, n, to);
         } else {
-            put("\xef\xbf\xbd");
-            i++;
+            to = fmt::format_to(to, "\xef\xbf\xbd");
         }
+        i += std::max<std::size_t>(n, 1);
     }
-    put('"');
+    *to++ = '"';
+    end(to);
 }
 
 }  // namespace shaderx

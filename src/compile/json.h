@@ -41,26 +41,15 @@ class JsonWriter {
   private:
     void open(char bracket, bool lines);
     void close(char bracket);
-    void begin();
-    void newLine();
-    void word(std::string_view text) {
-        begin();
-        put(text);
-    }
-    void quoted(std::string_view text);
+    void word(std::string_view text);
 
-    // Where the next characters go, at most so many; whoever writes them moves `size_`.
+    // Writes what stands before a value; then, where its characters go, of which there are at most so many. Whoever
+    // writes them tells `end` where they end.
+    char* begin(std::size_t characters);
+    void end(const char* at) { size_ = static_cast<std::size_t>(at - out_.data()); }
     char* room(std::size_t characters) {
         if (out_.size() - size_ < characters) out_.resize(2 * out_.size() + characters);
         return out_.data() + size_;
-    }
-    void put(char c) {
-        *room(1) = c;
-        size_++;
-    }
-    void put(std::string_view text) {
-        text.copy(room(text.size()), text.size());
-        size_ += text.size();
     }
 
     std::string out_;          // the text so far, and room for more

@@ -15,6 +15,11 @@ std::size_t NameSet::slotOf(std::string_view name, std::uint32_t hash) const {
 }
 
 std::pair<std::size_t, bool> NameSet::insert(std::string_view name, std::uint32_t hash) {
+    if (slots_.empty()) {
+        constexpr std::size_t kUsual = 32;  // names of a function
+        at_.reserve(kUsual);
+        text_.reserve(8 * kUsual);
+    }
     if (at_.size() * 2 >= slots_.size()) {
         slots_.assign(std::max<std::size_t>(64, slots_.size() * 2), 0);
         for (std::uint32_t k = 0; k < at_.size(); k++) slots_[slotOf(text(k), hashText(text(k)))] = k + 1;
