@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "ir/module.h"
-#include "passes/specialise.h"
 
 namespace shaderx {
 
@@ -23,10 +23,21 @@ class FinishedFunctions {
     const std::unordered_map<Name, std::uint32_t>& numbers() const { return numberOf_; }
 
   private:
-    using Key = passes::Specialisations::Key;
+    using Key = std::vector<std::uint32_t>;
+    // Of the first half, which has most of the operations and tells nearly all functions apart.
+    struct KeyHash {
+        std::size_t operator()(const Key& key) const noexcept {
+            std::uint64_t h = key.size();
+            for (std::size_t i = 0; i + 1 < key.size() / 2; i += 2) {
+                h = (h ^ (key[i] | std::uint64_t(key[i + 1]) << 32)) * 0x9e3779b97f4a7c15ull;
+                h ^= h >> 32;
+            }
+            return h;
+        }
+    };
     void keyOf(const ir::Module& module, const ir::Function& f);
 
-    std::unordered_map<Key, std::uint32_t, passes::Specialisations::KeyHash> byContent_;
+    std::unordered_map<Key, std::uint32_t, KeyHash> byContent_;
     std::vector<std::unique_ptr<const ir::Function>> made_;  // by number
     std::unordered_map<Name, std::uint32_t> numberOf_;       // of this module's functions
     Key key_;

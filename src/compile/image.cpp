@@ -12,7 +12,7 @@ namespace shaderx {
 
 namespace {
 
-constexpr std::uint32_t kMagic = 0x53584c42, kVersion = 2;
+constexpr std::uint32_t kMagic = 0x53584c42, kVersion = 3;
 
 enum Section : std::uint32_t {
     NameEnds,
@@ -105,7 +105,7 @@ void writeFunction(Sink s, const ir::Function& f) {
     s.array(f.words);
     s.array(f.hints);
     s.word(f.loops);
-    s.word(f.isInline);
+    s.word(f.isInline | f.isApart << 1);
     s.array(std::vector<char>(f.comment.begin(), f.comment.end()));
 }
 
@@ -124,7 +124,9 @@ ir::Function readFunction(Reader r) {
     f.words = r.array<std::uint32_t>();
     f.hints = r.array<Name>();
     f.loops = r.word();
-    f.isInline = r.word() != 0;
+    const std::uint32_t flags = r.word();
+    f.isInline = flags & 1;
+    f.isApart = flags & 2;
     std::vector<char> comment = r.array<char>();
     f.comment.assign(comment.begin(), comment.end());
     return f;

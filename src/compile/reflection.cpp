@@ -45,6 +45,7 @@ struct Reflector {
     std::unordered_map<Name, std::size_t> firstOf{};  // of a uniform's readings in `authored`
 
     void run() {
+        shader.textures.reserve(from.interface.pixelUniforms.uniforms.size());
         for (std::size_t i = 0; i < from.authored.size(); i++)
             if (Name uniform = from.authored[i].uniform) firstOf.emplace(uniform, i);
         predefined();
@@ -153,6 +154,7 @@ struct Reflector {
     }
 
     void describe(const doc::Attribute& x, ValueDescription& to) {
+        if (x.name == d.known().name || x.name == d.known().type || x.name == d.known().value) return;
         const UiAttributes& k = attributes;
         UiHints& ui = to.ui;
         const std::pair<Name, std::string*> texts[] = {

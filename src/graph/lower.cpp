@@ -44,6 +44,9 @@ struct Lowerer {
     std::unordered_map<Name, ExprId> geometric{};
     std::unordered_map<doc::ElementId, Name> uniformOf{};
     Name colorspace = d.names().intern("colorspace"), fileprefix = d.names().intern("fileprefix");
+    // Inputs of nodes that read images.
+    Name uaddressmode = d.names().intern("uaddressmode"), vaddressmode = d.names().intern("vaddressmode");
+    Name filtertype = d.names().intern("filtertype"), defaultColor = d.names().intern("default");
     Name uniformWord = d.names().intern("uniform"), unit = d.names().intern("unit");
     std::unordered_set<Name> failed{};  // nodedefs without a function
     std::string wanted{};               // room to make a uniform's name in
@@ -303,16 +306,18 @@ struct Lowerer {
     // How the node that reads the texture wants it read.
     void readHints(Uniform& u, const Node& n) {
         for (const Input& i : graph.inputsOf(n)) {
-            std::string_view name = d.text(i.port->name);
-            std::string value(i.source.kind == Source::Kind::Value
-                                  ? d.attributeText(i.source.element, d.known().value)
-                                  : definitions.element(graph.kindOf(n).def, *i.port).attributeText(d.known().value));
+            const Name name = i.port->name;
+            if (name != uaddressmode && name != vaddressmode && name != filtertype && name != defaultColor) continue;
+            std::string_view value =
+                i.source.kind == Source::Kind::Value
+                    ? d.attributeText(i.source.element, d.known().value)
+                    : definitions.element(graph.kindOf(n).def, *i.port).attributeText(d.known().value);
             if (value.empty()) continue;
-            if (name == "uaddressmode") u.uAddress = value;
-            if (name == "vaddressmode") u.vAddress = value;
-            if (name == "filtertype") u.filter = value;
+            if (name == uaddressmode) u.uAddress = value;
+            if (name == vaddressmode) u.vAddress = value;
+            if (name == filtertype) u.filter = value;
             Words words;
-            if (name == "default" && readWords(i.type, value, words))
+            if (name == defaultColor && readWords(i.type, value, words))
                 for (std::uint32_t w : words.all()) u.defaultColor.push_back(std::bit_cast<float>(w));
         }
     }

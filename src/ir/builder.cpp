@@ -348,24 +348,29 @@ static bool isSame(const Function& f, const Expr& a, const Expr& b) {
 void compact(Function& f) {
     constexpr std::uint32_t kDead = ExprId::kNone;
     const std::size_t n = f.exprs.size();
-    std::vector<std::uint32_t> at(n, kDead);  // any other number while it is only known to be needed
+    std::vector<std::uint32_t> places(n, kDead);  // any other number while it is only known to be needed
+    // Plain pointers: the arrays do not move, which a compiler cannot see.
+    std::uint32_t* const at = places.data();
+    Expr* const exprs = f.exprs.data();
+    ExprId* const operands = f.operands.data();
     std::size_t left = 0;
     for (const ResultValue& r : f.results) at[r.value.index] = 0;
     for (std::size_t i = n; i-- > 0;) {
         if (at[i] == kDead) continue;
         left++;
-        for (ExprId o : f.operandsOf(f.exprs[i])) at[o.index] = 0;
+        const ExprId* first = operands + exprs[i].firstOperand;
+        for (const ExprId *o = first, *end = first + exprs[i].operandCount; o != end; o++) at[o->index] = 0;
     }
     if (left == n) return;
-    std::uint32_t next = 0, operands = 0, words = 0;
+    std::uint32_t next = 0, operandsLeft = 0, words = 0;
     for (std::size_t i = 0; i < n; i++) {
         if (at[i] == kDead) continue;
-        Expr e = f.exprs[i];
-        ensure(operands <= e.firstOperand, "an arena that is out of order");
-        for (std::uint32_t k = 0; k < e.operandCount; k++)
-            f.operands[operands + k] = ExprId(at[f.operands[e.firstOperand + k].index]);
-        e.firstOperand = operands;
-        operands += e.operandCount;
+        Expr e = exprs[i];
+        ensure(operandsLeft <= e.firstOperand, "an arena that is out of order");
+        const ExprId* from = operands + e.firstOperand;
+        e.firstOperand = operandsLeft;
+        for (const ExprId* end = from + e.operandCount; from != end; from++)
+            operands[operandsLeft++] = ExprId(at[from->index]);
         if (hasWords(e)) {
             const std::uint32_t count = static_cast<std::uint32_t>(componentCount(e.type));
             ensure(words <= e.payload, "constants that are out of order");
@@ -375,12 +380,12 @@ void compact(Function& f) {
         }
         at[i] = next;
         f.hints[next] = f.hints[i];
-        f.exprs[next++] = e;
+        exprs[next++] = e;
     }
-    moveOrigins(f, at);
+    moveOrigins(f, places);
     f.exprs.resize(next);
     f.hints.resize(next);
-    f.operands.resize(operands);
+    f.operands.resize(operandsLeft);
     f.words.resize(words);
     for (ResultValue& r : f.results) r.value = ExprId(at[r.value.index]);
 }

@@ -72,6 +72,7 @@ struct Function {
     std::vector<std::pair<std::uint32_t, Name>> origins;
     std::uint32_t loops = 0;  // loop numbers in use
     bool isInline = false;    // expand wherever called
+    bool isApart = false;     // of a library: never expanded, which was asked when the library was made
     std::string comment;      // one or more sentences about what it does, may be empty
 
     const Expr& operator[](ExprId e) const { return exprs[e.index]; }

@@ -84,8 +84,11 @@ class Demand {
         : from_(from), copy_(copy), b_(b), arguments_(arguments), owner_(owner), state_(from.exprs.size()) {
         first_ = static_cast<std::uint32_t>(state_.size());
         for (const ResultValue& r : from_.results) need(r.value);
-        for (std::uint32_t i = static_cast<std::uint32_t>(state_.size()); i-- > 0;)
-            if (state_[i] & kNeeded) visit(ExprId(i));
+        for (std::uint32_t i = static_cast<std::uint32_t>(state_.size()); i-- > 0;) {
+            if (!(state_[i] & kNeeded)) continue;
+            first_ = i;
+            visit(ExprId(i));
+        }
     }
     bool needs(ExprId e) const { return state_[e.index] & kNeeded; }
     // The first one that is needed.
@@ -100,10 +103,7 @@ class Demand {
     enum : std::uint8_t { kSide = 3, kNeeded = 4, kNotConstant = 8, kNotMade = 16 };  // kSide: operand + 1
     static constexpr int kMaxDepth = 24;  // of a condition that is worth a look
 
-    void need(ExprId e) {
-        state_[e.index] |= kNeeded;
-        first_ = std::min(first_, e.index);
-    }
+    void need(ExprId e) { state_[e.index] |= kNeeded; }
 
     void choose(ExprId e, std::size_t operand) {
         state_[e.index] |= static_cast<std::uint8_t>(operand + 1);
@@ -120,7 +120,9 @@ class Demand {
             if (t && isAll(t, 0.0f)) return choose(id, 0);
             if (t && isAll(t, 1.0f)) return choose(id, 1);
         }
-        for (ExprId o : from_.operandsOf(e)) need(o);
+        const ExprId* operands = from_.operands.data() + e.firstOperand;
+        std::uint8_t* state = state_.data();
+        for (std::uint32_t k = 0; k < e.operandCount; k++) state[operands[k].index] |= kNeeded;
     }
 
     bool isAll(ExprId e, float v) const {
@@ -302,7 +304,7 @@ struct Specialiser {
             return frame.results;
         }
         depth++;
-        if (mustExpand(*callee) || isSmall(*callee)) {
+        if (isExpanded(*callee)) {
             expand(*callee, b, frame.arguments, frame.results);
         } else if (isPartial) {
             keepCall(b, e, *callee, frame);
@@ -340,6 +342,8 @@ struct Specialiser {
         else
             results.push_back(b.null(e.type == Type::Tuple ? Type::Float : e.type));
     }
+
+    static bool isExpanded(const Function& f) { return !f.isApart && (mustExpand(f) || isSmall(f)); }
 
     static bool mustExpand(const Function& f) {
         if (f.isInline) return true;
@@ -681,7 +685,10 @@ void flatten(Module& module, Function& function) {
     s.limits.expressions = 1u << 14;  // beyond, it is left to the materials that use it
     Function fresh = headOf(function);
     s.rebuild(function, fresh);
-    if (s.ok) function = std::move(fresh);
+    if (!s.ok) return;
+    function = std::move(fresh);
+    function.isInline = Specialiser::isExpanded(function);
+    function.isApart = !function.isInline;
 }
 
 }  // namespace shaderx::passes
