@@ -1,7 +1,10 @@
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "base/diagnostics.h"
@@ -52,6 +55,21 @@ TEST(Numbers, ShortestTextReadsBack) {
     EXPECT_EQ(formatFloat(1.0f), "1");
     for (float v : {0.1f, 1e-38f, 3.4028235e38f, 16777216.0f, -0.0f, 1.0f / 3.0f})
         EXPECT_EQ(parseFloat(formatFloat(v)), v);
+}
+
+TEST(Numbers, TextsAreThoseOfTheLibraryThatIsKnownToFindTheShortest) {
+    auto check = [](float v) {
+        ASSERT_EQ(formatFloat(v), fmt::format("{}", v));
+        ASSERT_EQ(formatFloat(-v), fmt::format("{}", -v));
+    };
+    for (int digits = 1; digits < 1100000; digits += 7)
+        for (float scale : {1.0f, 10.0f, 1e3f, 1e5f, 1e6f, 1e8f}) check(static_cast<float>(digits) / scale);
+    std::mt19937 random(1);
+    for (int i = 0; i < 300000; i++) {
+        const float v = std::bit_cast<float>(static_cast<std::uint32_t>(random()) & 0x7fffffffu);
+        if (std::isfinite(v)) check(v);
+    }
+    for (float v : {0.0f, 1.0f, 999.9999f, 1000.0f, 0.0001f, 0.00009999f, 0.99999994f, 16.0f, 0.5f}) check(v);
 }
 
 // Short decimals go a shorter way than others: the same number with an exponent must give the same float.

@@ -9,9 +9,33 @@
 
 namespace shaderx {
 
+// Most numbers are a few digits around a point. No two texts of up to six digits read as one float, so a text of six
+// that reads back, less the zeros at its end, is the shortest. Null where there is none.
+static char* writeShortDecimal(char* to, float value) {
+    const double size = std::abs(static_cast<double>(value));
+    if (!(size >= 1e-4 && size < 1000)) return nullptr;
+    const std::uint32_t places = size < 1 ? 6 : 3, scale = size < 1 ? 1000000 : 1000;
+    const std::uint32_t digits = static_cast<std::uint32_t>(size * scale + 0.5);
+    if (digits >= 1000000 || static_cast<float>(static_cast<double>(digits) / scale) != std::abs(value)) return nullptr;
+    if (value < 0) *to++ = '-';
+    to = std::to_chars(to, to + kFloatText, digits / scale).ptr;
+    std::uint32_t rest = digits % scale;
+    if (!rest) return to;
+    *to++ = '.';
+    for (std::uint32_t k = places; k-- > 0; rest /= 10) to[k] = static_cast<char>('0' + rest % 10);
+    char* end = to + places;
+    while (end[-1] == '0') end--;
+    return end;
+}
+
+char* writeFloat(char* to, float value) {
+    if (char* end = writeShortDecimal(to, value)) return end;
+    return fmt::format_to(to, FMT_COMPILE("{}"), value);
+}
+
 std::string formatFloat(float value) {
-    char text[32];
-    return std::string(text, fmt::format_to(text, FMT_COMPILE("{}"), value));
+    char text[kFloatText];
+    return std::string(text, writeFloat(text, value));
 }
 
 static bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }

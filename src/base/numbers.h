@@ -1,6 +1,7 @@
 // Numbers to text and back, independent of the locale.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -9,6 +10,9 @@ namespace shaderx {
 
 // The shortest decimal text that reads back as the same float; `1`, `0.2`, `1e-08`, `nan`, `-inf`.
 std::string formatFloat(float value);
+// The same where there is room for kFloatText characters; returns where it ends.
+constexpr std::size_t kFloatText = 32;
+char* writeFloat(char* to, float value);
 
 // Reads a whole text, blanks around it allowed; none if anything else is left. Values too large for a float are none.
 std::optional<float> parseFloat(std::string_view text);

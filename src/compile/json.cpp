@@ -78,7 +78,8 @@ void JsonWriter::integer(std::int64_t value) {
 void JsonWriter::number(float value) {
     if (!std::isfinite(value)) return null();
     if (std::abs(value) < 1e6f && value == std::trunc(value)) return integer(static_cast<std::int64_t>(value));
-    word(formatFloat(value));
+    char* to = begin(kFloatText);
+    end(writeFloat(to, value));
 }
 
 // Bytes of the UTF-8 character at the start of a text, 0 where it is none (RFC 3629, section 4).

@@ -294,14 +294,19 @@ void Document::remove(ElementId id) {
 
 std::string Document::path(ElementId id) const {
     if (!has(id)) return {};
-    std::vector<std::string_view> parts;
-    for (; id && elements_[id.index].parent; id = elements_[id.index].parent)
-        if (elements_[id.index].name) parts.push_back(text(elements_[id.index].name));
-    std::string out;
-    for (auto p = parts.rbegin(); p != parts.rend(); ++p) {
-        if (!out.empty()) out += '/';
-        out += *p;
-    }
+    // From the end to the start, which is how elements know each other.
+    auto each = [&](auto&& visit) {
+        for (ElementId e = id; e && elements_[e.index].parent; e = elements_[e.index].parent)
+            if (elements_[e.index].name) visit(text(elements_[e.index].name));
+    };
+    std::size_t size = 0;
+    each([&](std::string_view part) { size += part.size() + 1; });
+    if (!size) return {};
+    std::string out(size - 1, '/');
+    each([&](std::string_view part) {
+        size -= part.size() + 1;
+        part.copy(out.data() + size, part.size());
+    });
     return out;
 }
 

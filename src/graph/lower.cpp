@@ -61,6 +61,7 @@ struct Lowerer {
         }
         results.reserve(graph.nodes.size());
         firstResult.reserve(graph.nodes.size());
+        if (options.interface != Interface::Baked) module.uniforms.reserve(graph.nodes.size());
         for (const Node& n : graph.nodes) node(n);
         if (!ok) return false;
         for (const Output& o : graph.outputs) {

@@ -283,8 +283,11 @@ void FunctionPrinter::assign(const std::string& target, ExprId value, ExprId sel
 
 namespace {
 
-void uniformLine(Stage& stage, Type type, const std::string& name, std::string_view value) {
-    stage.out.line({"uniform ", typeName(type), " ", name, " = ", value, ";"});
+// A uniform up to its value.
+std::string& beginUniform(Stage& stage, Type type, const std::string& name) {
+    std::string& line = stage.out.begin().append("uniform ");
+    line.append(typeName(type)) += ' ';
+    return line.append(name);
 }
 
 // The same in every shader, and some of them are matrices.
@@ -294,7 +297,7 @@ const std::string& defaultText(Context c) {
         for (std::size_t i = 0; i < all.size(); i++) {
             const Context context = static_cast<Context>(i);
             const Type type = info(context).type;
-            if (componentCount(type)) all[i] = constantText(type, passes::defaultOf(context).data());
+            if (componentCount(type)) writeConstant(all[i], type, passes::defaultOf(context).data());
         }
         return all;
     }();
@@ -357,20 +360,21 @@ void uniforms(Stage& stage, const passes::StageUniforms& used) {
         if (info(c).type == Type::Texture2D)
             samplerLine(stage, name, index);
         else
-            uniformLine(stage, info(c).type, name, defaultText(c));
+            beginUniform(stage, info(c).type, name).append(" = ").append(defaultText(c)), stage.out.end(";");
     }
     if (!used.contexts.empty() && !used.uniforms.empty()) stage.out.line();
     for (Name name : used.uniforms)
         if (const Uniform* u = stage.module.uniform(name)) {
-            std::size_t start = stage.out.size();
             std::string& spelled = stage.globals[name] = stage.namer.global(stage.module.names->text(name));
             if (u->type == Type::Texture2D) {
                 samplerLine(stage, spelled, index);
                 continue;
             }
-            uniformLine(stage, u->type, spelled, constantText(u->type, u->values.data()));
-            std::size_t value = std::string_view("uniform ").size() + typeName(u->type).size() + 1 + spelled.size();
-            stage.apart.emplace_back(start + value, stage.out.size());
+            std::string& line = beginUniform(stage, u->type, spelled);
+            const std::size_t value = line.size();
+            writeConstant(line.append(" = "), u->type, u->values.data());
+            stage.out.end(";");
+            stage.apart.emplace_back(value, stage.out.size());
         }
     if (!used.contexts.empty() || !used.uniforms.empty()) stage.out.line();
 }

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -15,22 +17,33 @@ using namespace ir;
 
 static constexpr int kPostfix = 15, kUnary = 14, kTernary = 1;
 
-static std::string number(Scalar scalar, std::uint32_t word) {
+static void writeNumber(std::string& to, Scalar scalar, std::uint32_t word) {
+    char text[kFloatText];
     switch (scalar) {
         case Scalar::Boolean:
-            return word ? "true" : "false";
+            to += word ? "true" : "false";
+            return;
         case Scalar::Integer:
             // The lowest integer has no literal of its own.
-            return word == 0x80000000u ? "(-2147483647 - 1)" : std::to_string(static_cast<int>(word));
+            if (word == 0x80000000u)
+                to += "(-2147483647 - 1)";
+            else
+                to.append(text, std::to_chars(text, std::end(text), static_cast<int>(word)).ptr);
+            return;
         case Scalar::Float: {
             const float value = std::bit_cast<float>(word);
-            if (std::isnan(value)) return "uintBitsToFloat(0x7fc00000u)";
-            if (std::isinf(value)) return value > 0 ? "uintBitsToFloat(0x7f800000u)" : "uintBitsToFloat(0xff800000u)";
-            if (value == std::trunc(value) && std::abs(value) < 1e6f && word != 0x80000000u)
-                return std::to_string(static_cast<int>(value)) + ".0";
-            std::string s = formatFloat(value);
-            if (s.find_first_of(".e") == std::string::npos) s += ".0";
-            return s;
+            if (!std::isfinite(value)) {
+                to += std::isnan(value) ? "uintBitsToFloat(0x7fc00000u)"
+                      : value > 0       ? "uintBitsToFloat(0x7f800000u)"
+                                        : "uintBitsToFloat(0xff800000u)";
+                return;
+            }
+            const bool isWhole = value == std::trunc(value) && std::abs(value) < 1e6f && word != 0x80000000u;
+            char* end =
+                isWhole ? std::to_chars(text, std::end(text), static_cast<int>(value)).ptr : writeFloat(text, value);
+            to.append(text, end);
+            if (isWhole || std::string_view(text, end).find_first_of(".e") == std::string_view::npos) to += ".0";
+            return;
         }
         case Scalar::None:
             break;
@@ -38,19 +51,22 @@ static std::string number(Scalar scalar, std::uint32_t word) {
     internalError("a constant without components");
 }
 
-std::string constantText(Type type, const std::uint32_t* words) {
-    Scalar scalar = info(type).scalar;
-    int n = componentCount(type);
-    if (n == 1) return number(scalar, words[0]);
-    std::string out = std::string(typeName(type)) + "(";
+void writeConstant(std::string& to, Type type, const std::uint32_t* words) {
+    const Scalar scalar = info(type).scalar;
+    const int n = componentCount(type);
+    if (n == 1) return writeNumber(to, scalar, words[0]);
     bool same = !isMatrix(type) && std::all_of(words, words + n, [&](std::uint32_t w) { return w == words[0]; });
     if (isMatrix(type)) {  // a diagonal of one number is written as that number
-        int rows = info(type).rows;
+        const int rows = info(type).rows;
         same = true;
         for (int i = 0; i < n; i++) same = same && words[i] == (i % (rows + 1) ? 0 : words[0]);
     }
-    for (int i = 0; i < (same ? 1 : n); i++) out += (i ? ", " : "") + number(scalar, words[i]);
-    return out + ")";
+    to.append(typeName(type)) += '(';
+    for (int i = 0; i < (same ? 1 : n); i++) {
+        if (i) to += ", ";
+        writeNumber(to, scalar, words[i]);
+    }
+    to += ')';
 }
 
 std::string FunctionPrinter::textOf(ExprId e, int precedence) {
@@ -92,7 +108,7 @@ void FunctionPrinter::writeLeaf(std::string& to, ExprId e) {
     switch (x.op) {
         case Op::Constant: {
             ensure(componentCount(x.type) > 0, "a constant that has no text");
-            to += constantText(x.type, f_.constantWords(e).data());
+            writeConstant(to, x.type, f_.constantWords(e).data());
             return;
         }
         case Op::Param:

@@ -27,7 +27,7 @@ struct Stage {
 };
 
 // The text of constants: 0.5, vec3(0.8), mat3(…).
-std::string constantText(ir::Type type, const std::uint32_t* words);
+void writeConstant(std::string& to, ir::Type type, const std::uint32_t* words);
 
 // Prints one function of a stage.
 class FunctionPrinter {
