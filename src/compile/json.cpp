@@ -114,9 +114,19 @@ void JsonWriter::text(std::string_view value) {
     constexpr std::size_t kLongest = 6;  // of what stands for one byte
     char* to = begin(kLongest * value.size() + 2);
     *to++ = '"';
-    for (std::size_t i = 0; i < value.size();) {
-        for (; i + 8 <= value.size() && arePlain(loadText<std::uint64_t>(value.data() + i)); i += 8, to += 8)
-            std::memcpy(to, value.data() + i, 8);
+    std::size_t i = 0;
+    for (; i + 8 <= value.size() && arePlain(loadText<std::uint64_t>(value.data() + i)); i += 8, to += 8)
+        std::memcpy(to, value.data() + i, 8);
+    if (const std::size_t rest = value.size() - i; i && rest < 8) {
+        // The last eight, some of them again.
+        const char* last = value.data() + value.size() - 8;
+        if (arePlain(loadText<std::uint64_t>(last))) {
+            std::memcpy(to + rest - 8, last, 8);
+            to += rest;
+            i = value.size();
+        }
+    }
+    while (i < value.size()) {
         for (; i < value.size() && isPlain(value[i]); i++) *to++ = value[i];
         if (i == value.size()) break;
         const char c = value[i];

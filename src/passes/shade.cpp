@@ -51,7 +51,7 @@ struct Shader {
         fresh.params = from.params;
         fresh.comment = from.comment;
         for (std::uint32_t i = 0; i < from.exprs.size(); i++)
-            if (live[i] && !isClosure(from.exprs[i].type)) copy.one(ExprId(i));
+            if (live[i] && !isClosure(from.exprs[i].type)) copy.raw(ExprId(i));  // as simple as it was
         beginLight();
         ExprId result = from.results[0].value;
         Type type = from.results[0].type;
