@@ -384,8 +384,12 @@ struct Checker::State {
             Value value = attributeValue(name, v.type);
             for (int c = 0; c < kContexts; c++)
                 if (info(static_cast<Context>(c)).host == name) value = contextValue(static_cast<Context>(c));
-            values += fmt::format("    vd.{} = {};\n", name,
-                                  name == kPlace ? "place" : glsl::constantText(v.type, value.words));
+            std::string text;
+            if (name == kPlace)
+                text = "place";
+            else
+                glsl::writeConstant(text, v.type, value.words);
+            values += fmt::format("    vd.{} = {};\n", name, text);
         }
         return fmt::format(
             "#version 400\nout VertexData {{\n{}}} vd;\nvoid main() {{\n    vec2 place = 2.0 * vec2(gl_VertexID & 1, "
