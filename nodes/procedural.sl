@@ -162,12 +162,17 @@ vector4 noise_vector4_3d(vector p) {
     return vector4(noise_vector_3d(p), noise_3d(p + vector(19.0, 73.0, 29.0)));
 }
 
+// More octaves than these are finer than a float can tell; a document must not make who draws it wait for ever.
+int octave_count(int octaves) {
+    return min(octaves, 64);
+}
+
 // Octaves of noise: each is finer by `lacunarity` and weaker by `diminish`.
 float fractal_2d(vector2 p, int octaves, float lacunarity, float diminish) {
     float sum = 0.0;
     float amplitude = 1.0;
     vector2 q = p;
-    for (int i = 0; i < octaves; i++) {
+    for (int i = 0; i < octave_count(octaves); i++) {
         sum += amplitude * noise_2d(q);
         amplitude *= diminish;
         q *= lacunarity;
@@ -179,7 +184,7 @@ vector fractal_vector_2d(vector2 p, int octaves, float lacunarity, float diminis
     vector sum = vector(0.0);
     float amplitude = 1.0;
     vector2 q = p;
-    for (int i = 0; i < octaves; i++) {
+    for (int i = 0; i < octave_count(octaves); i++) {
         sum += amplitude * noise_vector_2d(q);
         amplitude *= diminish;
         q *= lacunarity;
@@ -201,7 +206,7 @@ float fractal_3d(vector p, int octaves, float lacunarity, float diminish) {
     float sum = 0.0;
     float amplitude = 1.0;
     vector q = p;
-    for (int i = 0; i < octaves; i++) {
+    for (int i = 0; i < octave_count(octaves); i++) {
         sum += amplitude * noise_3d(q);
         amplitude *= diminish;
         q *= lacunarity;
@@ -213,7 +218,7 @@ vector fractal_vector_3d(vector p, int octaves, float lacunarity, float diminish
     vector sum = vector(0.0);
     float amplitude = 1.0;
     vector q = p;
-    for (int i = 0; i < octaves; i++) {
+    for (int i = 0; i < octave_count(octaves); i++) {
         sum += amplitude * noise_vector_3d(q);
         amplitude *= diminish;
         q *= lacunarity;

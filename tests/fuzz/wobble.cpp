@@ -113,9 +113,13 @@ struct Wobbly::Copier {
         return moves(b.type(e)) ? raw(Op::Mul, b.type(e), {e, knob(kind, b.type(e))}) : e;
     }
 
-    // 1 where x is 0, above 0, below 0; else 0.
-    ExprId isZero(ExprId x) { return two(Op::Sub, b.number(1), one(Op::Abs, one(Op::Sign, x))); }
-    ExprId isPositive(ExprId x) { return two(Op::Max, one(Op::Sign, x), b.number(0)); }
+    // 1 where x is 0, above 0, below 0; else 0, but of what is no number neither: it stays what it is.
+    ExprId isZero(ExprId x) { return two(Op::Sub, b.number(1), one(Op::Abs, sign(x))); }
+    ExprId isPositive(ExprId x) { return two(Op::Max, sign(x), b.number(0)); }
+    ExprId sign(ExprId x) {
+        const ExprId nothing = two(Op::Mul, two(Op::Min, one(Op::Abs, x), b.number(1)), b.number(0));
+        return two(Op::Add, one(Op::Sign, x), nothing);
+    }
     ExprId isNegative(ExprId x) { return isPositive(one(Op::Neg, x)); }
     ExprId no(ExprId truth) { return two(Op::Sub, b.number(1), truth); }
 

@@ -75,10 +75,11 @@ float noise_3d(vec3 p)
 
 float fractal_3d(vec3 p, int octaves)
 {
+    int k = min(octaves, 64);
     float sum = 0.0;
     float amplitude = 1.0;
     vec3 q = p;
-    for (int i = 0; i < octaves; i++)
+    for (int i = 0; i < k; i++)
     {
         sum += amplitude * noise_3d(q);
         amplitude *= 0.5;

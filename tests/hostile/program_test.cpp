@@ -344,5 +344,21 @@ TEST_F(Pictures, Truncated) {
     }
 }
 
+// Numbers of turns come from the document: what it draws ends all the same.
+TEST_F(Pictures, OfMoreOctavesThanAnyoneHasTimeFor) {
+    for (const char* node : {"fractal2d", "fractal3d"}) {
+        put("a.mtlx", wrapped("<" + std::string(node) +
+                              " name='f' type='color3'><input name='octaves' type='integer' "
+                              "value='2147483647'/></" +
+                              node + "><output name='o' type='color3' nodename='f'/>"));
+        for (const char* how :
+             {"gl --interface live", "interpreter --interface live", "interpreter --interface baked"}) {
+            Ran ran = shaderx("draw a.mtlx --size 8 --samples 1 -o ../out/p.pfm --with " + std::string(how), in);
+            if (contains(ran.errors, "no-module") || contains(ran.errors, "no-driver")) continue;
+            EXPECT_EQ(ran.exitCode, 0) << node << " " << how << "\n" << ran.errors;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace shaderx::tests
