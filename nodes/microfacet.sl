@@ -148,9 +148,9 @@ void microfacet_light(vector2 roughness, boolean refracts, boolean retroreflecti
     color once = share / total;
     // What an anisotropic lobe throws below the horizon beyond what an isotropic one would is lost, as shadows are.
     float white = isotropic ? E : microfacet_white(NV, mean);
-    color all = refracts ? color(1.0) : mix(once, color(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
-    radiance = light * (all / total);
-    albedo = once * all;
+    color bounces = refracts ? color(1.0) : mix(once, color(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
+    radiance = light * (bounces / total);
+    albedo = once * bounces;
 }
 
 void microfacet_reflection(vector2 roughness, boolean retroreflective, boolean clear, float ior, color base, color rise,

@@ -206,7 +206,8 @@ struct Wobbly::Copier {
             return bad;
         }
         if (e.op == Op::Convert && b.type(o[0]) == Type::Float) {
-            ExprId bad = raw(Op::Less, Type::Boolean, {b.number(2e9f), one(Op::Abs, o[0])});
+            // What is no number is not below anything either.
+            ExprId bad = one(Op::Not, raw(Op::Less, Type::Boolean, {one(Op::Abs, o[0]), b.number(2e9f)}));
             o[0] = raw(Op::Select, Type::Float, {bad, b.number(0), o[0]});
             return bad;
         }

@@ -145,9 +145,9 @@ vec3 microfacet_light(vec2 roughness, vec3 N, vec3 V, vec3 X, out vec3 albedo)
     float E = min(reach * total / count, 1.0);
     vec3 once = share / total;
     float white = isotropic ? E : microfacet_white(NV, mean);
-    vec3 all2 = mix(once, vec3(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = mix(once, vec3(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 // Reflectance of a conductor of index n + ik for unpolarised light; exact for positive c. Written out, the squares of

@@ -217,9 +217,9 @@ vec3 microfacet_light(vec2 roughness, bool refracts, bool clear, float ior, vec3
     vec3 once = share / total;
     float white = isotropic ? E : microfacet_white(NV, mean);
     vec3 v3 = mix(once, vec3(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
-    vec3 all2 = refracts ? vec3(1.0) : v3;
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = refracts ? vec3(1.0) : v3;
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 void main()

@@ -93,9 +93,9 @@ vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
         share += F;
     }
     vec3 once = share / total;
-    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 // Reflectance at an interface of admittance u + iw.
@@ -217,9 +217,9 @@ vec3 microfacet_light2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V, vec
     float E = min(reach * total / count, 1.0);
     vec3 once = share / total;
     float white = isotropic ? E : microfacet_white(NV, mean);
-    vec3 all2 = mix(once, vec3(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = mix(once, vec3(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 // Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8).

@@ -70,8 +70,8 @@ vec3 microfacet_light(vec3 N, vec3 V)
         light += F2 * environment_lookup(u_envRadiance, d, level2);
         share += F2;
     }
-    vec3 all2 = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
-    return light * (all2 / total);
+    vec3 bounces = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
+    return light * (bounces / total);
 }
 
 void main()

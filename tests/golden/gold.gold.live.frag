@@ -92,8 +92,8 @@ vec3 microfacet_light(float roughness, vec3 base, vec3 rise, vec3 bend, vec3 dip
         light += F * environment_lookup(u_envRadiance, d, level2);
         share += F;
     }
-    vec3 all2 = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
-    return light * (all2 / total);
+    vec3 bounces = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
+    return light * (bounces / total);
 }
 
 void main()

@@ -115,9 +115,9 @@ vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albed
         share += F;
     }
     vec3 once = share / total;
-    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 // Reflectance at an interface of admittance u + iw.
@@ -222,9 +222,9 @@ vec3 microfacet_light2(float roughness, float ior, vec3 base, vec3 rise, vec3 N,
         share += F;
     }
     vec3 once = share / total;
-    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 // Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
@@ -263,8 +263,8 @@ vec3 microfacet_light3(float roughness, vec3 base, vec3 rise, vec3 N, vec3 V)
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
     }
-    vec3 all2 = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
-    return light * (all2 / total);
+    vec3 bounces = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
+    return light * (bounces / total);
 }
 
 // Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8).

@@ -98,9 +98,9 @@ vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
         share += F;
     }
     vec3 once = share / total;
-    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 // The level of detail of samples, but for what differs from one to the next.
@@ -144,9 +144,9 @@ vec3 microfacet_light2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
         share += F;
     }
     vec3 once = share / total;
-    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 // Reflectance of a conductor of index n + ik for unpolarised light; exact for positive c. Written out, the squares of
@@ -199,8 +199,8 @@ vec3 microfacet_light3(vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
     }
-    vec3 all2 = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
-    return light * (all2 / total);
+    vec3 bounces = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
+    return light * (bounces / total);
 }
 
 // Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
