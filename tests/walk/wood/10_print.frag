@@ -94,9 +94,9 @@ vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albed
         share += F;
     }
     vec3 once = share / total;
-    vec3 all2 = mix(once, vec3(1.0), min(reach * total / count, 1.0));
-    albedo = once * all2;
-    return light * (all2 / total);
+    vec3 bounces = mix(once, vec3(1.0), min(reach * total / count, 1.0));
+    albedo = once * bounces;
+    return light * (bounces / total);
 }
 
 void main()
