@@ -1,7 +1,6 @@
 #include "passes/prune.h"
 
 #include <algorithm>
-#include <cstring>
 #include <unordered_map>
 
 #include "base/diagnostics.h"
@@ -148,7 +147,7 @@ struct Pruner {
         return std::any_of(use.calls.begin(), use.calls.end(),
                            [&](const Call& c) { return uses[c.callee].isNarrowed || uses[c.callee].alias; });
     }
-    static bool hasFalse(const std::vector<char>& v) { return std::memchr(v.data(), false, v.size()) != nullptr; }
+    static bool hasFalse(const std::vector<char>& v) { return std::find(v.begin(), v.end(), false) != v.end(); }
 
     // Takes what goes out of a function, in place: what is left is as simple as it was.
     void narrow(Use& use) {
