@@ -21,13 +21,17 @@ void microfacet_frame(vector2 roughness, vector N, vector V, vector X, output ve
 
 // Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2). The cap of the
 // unit sphere is that of a view s, stretched and made unit: the half vector, stretched, is s plus a point of the sphere.
-// Heights descend evenly, azimuths turn by the golden angle.
-vector microfacet_cap(int i, float descent, vector s)
+// Heights descend evenly; `azimuth` is a direction.
+vector microfacet_cap(int i, vector2 azimuth, float descent, vector s)
 {
-    float k = i;
-    float azimuth = 2.39996323 * k;
-    float z = 1.0 - (k + 0.5) * descent;
-    return vector(vector2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z) + s;
+    float z = 1.0 - (i + 0.5) * descent;
+    return vector(azimuth * sqrt(1.0 - z * z), z) + s;
+}
+
+// A direction in the plane, turned by the golden angle.
+vector2 golden_turn(vector2 d)
+{
+    return -0.737368878 * d + vector2(-0.675490294, 0.675490294) * vector2(d.y, d.x);
 }
 
 // The level of detail of samples, but for what differs from one to the next. Each of n samples covers 1 / (n pdf) of the
@@ -39,13 +43,15 @@ float microfacet_level(vector alpha, float reach)
     return environment_mips - 2.5 - 0.5 * log2(density);
 }
 
-// Light from the direction d of the map, at the level for its sample.
+// Light from the direction d of the map, at the level for its sample. Halfway between two levels they are mixed, near
+// one of them it is read alone, which is much faster: the samples, each at a level of its own, mix the rest.
 color microfacet_lookup(vector d, float level, float ratio)
 {
     float r2 = ratio * ratio;
     // 1.00001 instead of 1: the poles keep a finite level.
-    return environment_lookup(environment_radiance, d,
-                              max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0));
+    float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float whole = floor(best);
+    return environment_lookup(environment_radiance, d, whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0));
 }
 
 // E: what white GGX reflects in one bounce to a view at cosine NV. Fitted by tools/fit to E by quadrature.
@@ -125,12 +131,13 @@ void microfacet_light(vector2 roughness, boolean refracts, boolean retroreflecti
     }
     matrix33 frame = matrix33(environment_matrix) * matrix33(x, y, N);
     vector away = refracts ? v : -v;
+    vector2 azimuth = vector2(1.0, 0.0);
     float total = 0.00000001;
     color light = color(0.0);
     color share = color(0.0);
     for (int i = 0; i < environment_samples; i++)
     {
-        vector h = microfacet_cap(i, descent, s);
+        vector h = microfacet_cap(i, azimuth, descent, s);
         vector slope = alpha * h;
         vector H = normalize(slope);
         // Through the sphere light turns as much at the far side as at the near one: it leaves where a mirror along its
@@ -140,6 +147,7 @@ void microfacet_light(vector2 roughness, boolean refracts, boolean retroreflecti
         float weight = refracts ? 1.0 : NL / (toView * NL + NV * microfacet_stretch(mean, NL));
         color F = weight * microfacet_fresnel(clear, ior, base, rise, bend, dip, exponent, dot(v, H));
         color seen = microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
+        azimuth = golden_turn(azimuth);
         total += weight;
         share += F;
         light += F * seen;

@@ -68,12 +68,10 @@ float microfacet_level(vec3 alpha, float reach)
 }
 
 // Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
-vec3 microfacet_cap(int i, float descent, vec3 s)
+vec3 microfacet_cap(int i, vec2 azimuth, float descent, vec3 s)
 {
-    float k = float(i);
-    float azimuth = 2.3999631 * k;
-    float z = 1.0 - descent * (k + 0.5);
-    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+    float z = 1.0 - descent * (float(i) + 0.5);
+    return s + vec3(azimuth * sqrt(1.0 - z * z), z);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -87,7 +85,9 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
 vec3 microfacet_lookup(vec3 d, float level, float ratio)
 {
     float r2 = ratio * ratio;
-    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float whole = floor(best);
+    float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
     return environment_lookup(u_envRadiance, d, level2);
 }
 
@@ -121,12 +121,13 @@ vec3 microfacet_light(vec2 roughness, vec3 N, vec3 V, vec3 X, out vec3 albedo)
     float reach = NV + stretched;
     float level = microfacet_level(alpha, reach);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
@@ -138,6 +139,7 @@ vec3 microfacet_light(vec2 roughness, vec3 N, vec3 V, vec3 X, out vec3 albedo)
         float rs = (x5 - u) / (x5 + u);
         float rp = (x5 - p) / (x5 + p);
         float F = weight * (0.5 * (rs * rs + rp * rp));
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -187,12 +189,13 @@ vec3 microfacet_light2(vec2 roughness, vec3 base, vec3 rise, vec3 bend, vec3 dip
     float reach = NV + stretched;
     float level = microfacet_level(alpha, reach);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
@@ -203,6 +206,7 @@ vec3 microfacet_light2(vec2 roughness, vec3 base, vec3 rise, vec3 bend, vec3 dip
         float t2 = t * t;
         float t4 = t2 * t2;
         vec3 F = weight * clamp(base + rise * (t * t4) + (bend + dip * t4) * (x5 * t2), 0.0, 1.0);
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;

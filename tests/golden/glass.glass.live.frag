@@ -40,12 +40,10 @@ float microfacet_level(vec3 alpha, float reach)
 }
 
 // Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
-vec3 microfacet_cap(int i, float descent, vec3 s)
+vec3 microfacet_cap(int i, vec2 azimuth, float descent, vec3 s)
 {
-    float k = float(i);
-    float azimuth = 2.3999631 * k;
-    float z = 1.0 - descent * (k + 0.5);
-    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+    float z = 1.0 - descent * (float(i) + 0.5);
+    return s + vec3(azimuth * sqrt(1.0 - z * z), z);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -59,7 +57,9 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
 vec3 microfacet_lookup(vec3 d, float level, float ratio)
 {
     float r2 = ratio * ratio;
-    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float whole = floor(best);
+    float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
     return environment_lookup(u_envRadiance, d, level2);
 }
 
@@ -83,12 +83,13 @@ vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albed
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
     float n2 = max(ior * ior, 0.0001);
     float x3 = n2 - 1.0;
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
@@ -100,6 +101,7 @@ vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albed
         float rs = (x4 - u) / (x4 + u);
         float rp = (x4 - p) / (x4 + p);
         float F = weight * (0.5 * (rs * rs + rp * rp));
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -126,14 +128,16 @@ vec3 microfacet_light2(float roughness, float ior, vec3 N, vec3 V)
     float level = microfacet_level(alpha, NV + stretched);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
     float x3 = 1.0 / ior;
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = alpha * h;
         vec3 d = frame * reflect(v, refract(-v, normalize(slope), x3));
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += 1.0;
         light += microfacet_lookup(d, level, dot(slope, slope) / dot(h, h));
         share += 1.0;

@@ -31,12 +31,10 @@ in VertexData
 out vec4 out1;
 
 // Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
-vec3 microfacet_cap(int i, float descent, vec3 s)
+vec3 microfacet_cap(int i, vec2 azimuth, float descent, vec3 s)
 {
-    float k = float(i);
-    float azimuth = 2.3999631 * k;
-    float z = 1.0 - descent * (k + 0.5);
-    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+    float z = 1.0 - descent * (float(i) + 0.5);
+    return s + vec3(azimuth * sqrt(1.0 - z * z), z);
 }
 
 // Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
@@ -50,7 +48,9 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
 vec3 microfacet_lookup(vec3 d, float level, float ratio)
 {
     float r2 = ratio * ratio;
-    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float whole = floor(best);
+    float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
     return environment_lookup(u_envRadiance, d, level2);
 }
 
@@ -71,12 +71,13 @@ vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
     float reach = NV + stretched;
     float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (6.283185e-08 * reach));
     mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = vec3(0.0001, 0.0001, 1.0) * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
@@ -88,6 +89,7 @@ vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
         float rs = (x3 - u) / (x3 + u);
         float rp = (x3 - p) / (x3 + p);
         float F = weight * (0.5 * (rs * rs + rp * rp));
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -196,12 +198,13 @@ vec3 microfacet_light2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V, vec
     float x5 = 0.5 * log2(count / (reach * (x3 * (6.2831855 * x2))));
     float level = float(u_envRadianceMips) - 2.5 - x5;
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
@@ -210,6 +213,7 @@ vec3 microfacet_light2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V, vec
         float t = max(1.0 - dot(v, H), 0.0);
         float t2 = t * t;
         vec3 F = weight * clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;

@@ -53,12 +53,10 @@ float microfacet_level(vec3 alpha, float reach)
 }
 
 // Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2).
-vec3 microfacet_cap(int i, float descent, vec3 s)
+vec3 microfacet_cap(int i, vec2 azimuth, float descent, vec3 s)
 {
-    float k = float(i);
-    float azimuth = 2.3999631 * k;
-    float z = 1.0 - descent * (k + 0.5);
-    return s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+    float z = 1.0 - descent * (float(i) + 0.5);
+    return s + vec3(azimuth * sqrt(1.0 - z * z), z);
 }
 
 // Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
@@ -76,7 +74,9 @@ float fresnel_dielectric(float c, float ior)
 vec3 microfacet_lookup(vec3 d, float level, float ratio)
 {
     float r2 = ratio * ratio;
-    float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+    float whole = floor(best);
+    float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
     return environment_lookup(u_envRadiance, d, level2);
 }
 
@@ -98,18 +98,20 @@ vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albed
     float reach = NV + stretched;
     float level = microfacet_level(alpha, reach);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
         float F = weight * fresnel_dielectric(dot(v, H), ior);
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -205,18 +207,20 @@ vec3 microfacet_light2(float roughness, float ior, vec3 base, vec3 rise, vec3 N,
     float reach = NV + stretched;
     float level = microfacet_level(alpha, reach);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
         float NL = max(L.z, 0.0);
         float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, x2)));
         vec3 F = weight * (base + rise * fresnel_dielectric(dot(v, H), ior));
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;
@@ -245,12 +249,13 @@ vec3 microfacet_light3(float roughness, vec3 base, vec3 rise, vec3 N, vec3 V)
     float reach = NV + stretched;
     float level = microfacet_level(alpha, reach);
     mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        vec3 h = microfacet_cap(i, descent, s);
+        vec3 h = microfacet_cap(i, azimuth, descent, s);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
@@ -259,6 +264,7 @@ vec3 microfacet_light3(float roughness, vec3 base, vec3 rise, vec3 N, vec3 V)
         float t = max(1.0 - dot(v, H), 0.0);
         float t2 = t * t;
         vec3 F = weight * clamp(base + rise * (t * (t2 * t2)), 0.0, 1.0);
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * microfacet_lookup(frame * L, level, dot(slope, slope) / dot(h, h));
         share += F;

@@ -47,15 +47,14 @@ vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
     float reach = NV + stretched;
     float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (0.010053097 * reach));
     mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        float k = float(i);
-        float azimuth = 2.3999631 * k;
-        float z = 1.0 - descent * (k + 0.5);
-        vec3 h = s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+        float z = 1.0 - descent * (float(i) + 0.5);
+        vec3 h = s + vec3(azimuth * sqrt(1.0 - z * z), z);
         vec3 slope = vec3(0.040000003, 0.040000003, 1.0) * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
@@ -70,7 +69,10 @@ vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
         vec3 d = frame * L;
         float x4 = dot(slope, slope) / dot(h, h);
         float r2 = x4 * x4;
-        float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+        float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+        float whole = floor(best);
+        float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * environment_lookup(u_envRadiance, d, level2);
         share += F;

@@ -65,15 +65,14 @@ vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albed
     mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
     float n2 = max(ior * ior, 0.0001);
     float x5 = n2 - 1.0;
+    vec2 azimuth = vec2(1.0, 0.0);
     float total = 1e-08;
     vec3 light = vec3(0.0);
     vec3 share = vec3(0.0);
     for (int i = 0; i < u_envRadianceSamples; i++)
     {
-        float k = float(i);
-        float azimuth = 2.3999631 * k;
-        float z = 1.0 - descent * (k + 0.5);
-        vec3 h = s + vec3(vec2(cos(azimuth), sin(azimuth)) * sqrt(1.0 - z * z), z);
+        float z = 1.0 - descent * (float(i) + 0.5);
+        vec3 h = s + vec3(azimuth * sqrt(1.0 - z * z), z);
         vec3 slope = alpha * h;
         vec3 H = normalize(slope);
         vec3 L = reflect(-v, H);
@@ -88,7 +87,10 @@ vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albed
         vec3 d = frame * L;
         float x7 = dot(slope, slope) / dot(h, h);
         float r2 = x7 * x7;
-        float level2 = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+        float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+        float whole = floor(best);
+        float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
+        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
         total += weight;
         light += F * environment_lookup(u_envRadiance, d, level2);
         share += F;
