@@ -270,6 +270,8 @@ struct Lowerer {
     }
 
     Uniform& addUniform(doc::ElementId element, Type type) {
+        constexpr std::size_t kUsual = 8;
+        if (module.uniforms.empty()) module.uniforms.reserve(std::max(kUsual, module.uniforms.capacity()));
         Uniform& u = module.uniforms.emplace_back();
         u.name = uniformName(element);
         u.type = type;

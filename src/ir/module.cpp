@@ -14,9 +14,10 @@ Name Function::originOf(ExprId e) const {
 }
 
 Function& Module::add(Name name) {
-    Function f;
-    f.name = name;
-    return put(std::move(f));
+    Function*& slot = byName_[name];
+    if (!slot) slot = functions.emplace_back(std::make_unique<Function>()).get();
+    slot->name = name;
+    return *slot;
 }
 
 Function& Module::put(Function function) {

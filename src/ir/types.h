@@ -2,6 +2,8 @@
 // (Module::structs).
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -76,11 +78,17 @@ constexpr const TypeInfo& info(Type type) {
 Type typeNamed(std::string_view name);
 
 // Numbers in a value of the type: 3 of a color3, 9 of a matrix33, 0 of a closure.
-inline int componentCount(Type t) { return info(t).rows * info(t).columns; }
+inline constexpr std::array<std::uint8_t, kBuiltinTypes + 1> kComponents = [] {
+    std::array<std::uint8_t, kBuiltinTypes + 1> counts{};
+    for (std::size_t i = 0; i < counts.size(); i++)
+        counts[i] = static_cast<std::uint8_t>(kTypes[i].rows * kTypes[i].columns);
+    return counts;
+}();
+constexpr int componentCount(Type t) { return t < Type::FirstStruct ? kComponents[static_cast<std::size_t>(t)] : 0; }
 inline bool isClosure(Type t) { return t >= Type::BSDF && t <= Type::Material; }
 inline bool isScalar(Type t) { return componentCount(t) == 1; }
-inline bool isVector(Type t) { return info(t).rows > 1 && info(t).columns == 1; }
-inline bool isMatrix(Type t) { return info(t).columns > 1; }
+inline bool isMatrix(Type t) { return t == Type::Matrix33 || t == Type::Matrix44; }
+inline bool isVector(Type t) { return componentCount(t) > 1 && !isMatrix(t); }
 inline bool isFloatVector(Type t) { return isVector(t) && info(t).scalar == Scalar::Float; }
 inline bool isNumeric(Type t) { return info(t).scalar == Scalar::Float || info(t).scalar == Scalar::Integer; }
 

@@ -185,7 +185,10 @@ std::string outcome(const std::string& pass, Module& module, const Options& o, D
             text += std::string(names.text(u.name)) + (found.count(u.name) ? ": baked\n" : ": live\n");
         return text;
     }
-    if (pass == "stages") return stages(module, entry);
+    if (pass == "stages") {
+        for (auto& f : module.functions) compact(*f);
+        return stages(module, entry);
+    }
     if (pass == "place") {
         for (auto& f : module.functions) place(*f, o.place);
         return print(module);

@@ -200,9 +200,10 @@ struct Specialiser {
             fresh = module.names->intern(numbered.replace(end, std::string::npos, std::to_string(number)));
         name = fresh;
         known[fresh] = clone.key;
-        Function copy = clone.function;
+        Function& copy = module.add(fresh);
+        copy = clone.function;
         copy.name = fresh;
-        place(module.put(std::move(copy)));
+        place(copy);
         return fresh;
     }
 

@@ -130,10 +130,7 @@ ShaderInterface makeStages(Module& module, Name pixel, Name vertex) {
     made.pixel = pixel;
     made.vertex = vertex;
     Reads reads;
-    for (const auto& f : module.functions) {
-        compact(*f);  // what no result needs is neither carried nor supplied
-        reads.add(*f);
-    }
+    for (const auto& f : module.functions) reads.add(*f);
     made.pixelUniforms = reads.stage(module);
     for (auto& f : module.functions)
         if (reads.isMixed) narrowReads(module, *f, reads);

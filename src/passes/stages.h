@@ -41,6 +41,7 @@ struct ShaderInterface {
 // Collects what the module's entry `pixel` reads and adds the function `vertex`, whose first result is the clip-space
 // position and whose others are the varyings in their order. Positions, normals and tangents are in world space, y up;
 // normals go by the inverse transpose of the world matrix; the bitangent is cross(N, T). Attributes pass through.
+// Whatever a function holds counts as read, so that they are to be compact, as `prune` leaves them.
 ShaderInterface makeStages(ir::Module& module, Name pixel, Name vertex);
 
 // Contexts that a uniform block holds: those of either stage, in the order of context.def.

@@ -13,16 +13,8 @@ namespace {
 
 // All vectors of one size are one type here.
 Type erased(Type t) {
-    switch (t) {
-        case Type::Color3:
-        case Type::Point:
-        case Type::Normal:
-            return Type::Vector3;
-        case Type::Color4:
-            return Type::Vector4;
-        default:
-            return t;  // every other type is what it is
-    }
+    if (t == Type::Color3 || t == Type::Point || t == Type::Normal) return Type::Vector3;
+    return t == Type::Color4 ? Type::Vector4 : t;
 }
 
 // Which operands of a built-in function may stay scalar when the others are vectors.
@@ -81,9 +73,11 @@ struct Legaliser {
         for (const Param& p : from.params) fresh.params.push_back({p.name, erased(p.type)});
         b.reserve(from);
         for (std::uint32_t i = 0; i < from.exprs.size(); i++) {
-            operands.clear();
-            for (ExprId o : from.operandsOf(from.exprs[i])) operands.push_back(copy[o.index]);
-            copy[i] = one(ExprId(i), operands);
+            const Expr& e = from.exprs[i];
+            if (operands.size() < e.operandCount) operands.resize(e.operandCount);
+            const ExprId* old = from.operands.data() + e.firstOperand;
+            for (std::uint32_t k = 0; k < e.operandCount; k++) operands[k] = copy[old[k].index];
+            copy[i] = one(ExprId(i), {operands.data(), e.operandCount});
             if (Name hint = from.hints[i]; hint && !fresh.hints[copy[i].index]) fresh.hints[copy[i].index] = hint;
         }
         for (const ResultValue& r : from.results)
