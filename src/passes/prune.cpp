@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 #include "base/diagnostics.h"
 #include "passes/copy.h"
@@ -140,6 +141,31 @@ struct Pruner {
         return less;
     }
 
+    // The same order of those that live calls lead to.
+    void sortLive(std::span<const Name> entries) {
+        order.clear();
+        std::vector<char> isKnown(uses.size());
+        std::vector<std::pair<std::uint32_t, std::size_t>> stack;  // and the call to look at next
+        auto push = [&](std::uint32_t number) {
+            if (!isKnown[number]) stack.push_back({number, 0});
+            isKnown[number] = true;
+        };
+        for (Name e : entries) {
+            push(numbers[e]);
+            while (!stack.empty()) {
+                auto& [number, next] = stack.back();
+                const Use& use = uses[number];
+                while (next < use.calls.size() && !use.live[use.calls[next].expr]) next++;
+                if (next < use.calls.size()) {
+                    push(use.calls[next++].callee);
+                } else {
+                    order.push_back(number);
+                    stack.pop_back();
+                }
+            }
+        }
+    }
+
     // Whether anything of the function goes, or of the interface of those that it calls.
     bool isChanged(Use& use) const {
         use.isNarrowed = hasFalse(use.results) || (!use.isEntry && hasFalse(use.params));
@@ -273,11 +299,10 @@ void prune(Module& module, std::span<const Name> entries) {
         for (std::uint32_t n : p.order) p.mark(p.uses[n], round);
         round++;
     } while (p.forget());
+    p.sortLive(entries);
     std::vector<Name> names;
     for (std::uint32_t n : p.order) {
         Use& use = p.uses[n];
-        if (std::find(use.results.begin(), use.results.end(), true) == use.results.end())
-            continue;  // only dead calls led to it
         p.narrow(use);
         if (use.isEntry || !p.mergedWithEarlier(use, names)) names.push_back(use.function->name);
     }
