@@ -8,7 +8,8 @@ void conductor_curve(color ior, color extinction, float thinfilm_thickness, floa
     if (thinfilm_thickness > 0.0)
     {
         float NV = clamp(dot(N, V), 0.0001, 1.0);
-        base = fresnel_thin_film(NV, ior, extinction, thinfilm_thickness, thinfilm_ior);
+        color film = fresnel_thin_film(NV, ior, extinction, thinfilm_thickness, thinfilm_ior);
+        base = film;
         rise = color(0.0);
         bend = color(0.0);
         dip = color(0.0);

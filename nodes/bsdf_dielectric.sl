@@ -9,7 +9,8 @@ void dielectric_film(float ior, float thinfilm_thickness, float thinfilm_ior, ve
     if (thinfilm_thickness > 0.0)
     {
         float NV = clamp(dot(N, V), 0.0001, 1.0);
-        base = fresnel_thin_film(NV, color(ior), color(0.0), thinfilm_thickness, thinfilm_ior);
+        color film = fresnel_thin_film(NV, color(ior), color(0.0), thinfilm_thickness, thinfilm_ior);
+        base = film;
         rise = color(0.0);
     }
 }

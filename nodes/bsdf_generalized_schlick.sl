@@ -12,7 +12,8 @@ void generalized_schlick_curve(color color0, color color82, color color90, float
     {
         float NV = clamp(dot(N, V), 0.0001, 1.0);
         color root = sqrt(clamp(color0, 0.0, 0.99));
-        base = fresnel_thin_film(NV, (1.0 + root) / (1.0 - root), color(0.0), thinfilm_thickness, thinfilm_ior);
+        color film = fresnel_thin_film(NV, (1.0 + root) / (1.0 - root), color(0.0), thinfilm_thickness, thinfilm_ior);
+        base = film;
         rise = color(0.0);
         dip = color(0.0);
     }

@@ -4,7 +4,7 @@
 // second lobe for what bounces more than once.
 
 // Shares of Lambert's term (x) and of the rough one (y).
-vector2 oren_nayar_shares(float roughness, boolean energy_compensation)
+inline vector2 oren_nayar_shares(float roughness, boolean energy_compensation)
 {
     if (energy_compensation)
     {
@@ -17,7 +17,7 @@ vector2 oren_nayar_shares(float roughness, boolean energy_compensation)
 
 // Share of light that one bounce on white matter keeps. The rough term's integral is fitted by tools/fit over 1 - NV.
 // The qualitative model exceeds 1 by up to 1.5 % along the surface.
-float oren_nayar_fit(float roughness, boolean energy_compensation, float NV)
+inline float oren_nayar_fit(float roughness, boolean energy_compensation, float NV)
 {
     vector2 share = oren_nayar_shares(roughness, energy_compensation);
     float t = 1.0 - NV;
@@ -29,19 +29,19 @@ float oren_nayar_fit(float roughness, boolean energy_compensation, float NV)
     return share.x + share.y * rough;
 }
 
-float oren_nayar_white(float roughness, boolean energy_compensation, float NV)
+inline float oren_nayar_white(float roughness, boolean energy_compensation, float NV)
 {
     return min(oren_nayar_fit(roughness, energy_compensation, NV), 1.0);
 }
 
 // Mean of oren_nayar_white over the hemisphere, with energy_compensation.
-float oren_nayar_mean(float roughness)
+inline float oren_nayar_mean(float roughness)
 {
     return (1.0 + 0.0724882 * roughness) / (1.0 + 0.287793409 * roughness);
 }
 
 // Colour of light that bounced more than once.
-color oren_nayar_bounces(color tint, float roughness)
+inline color oren_nayar_bounces(color tint, float roughness)
 {
     float kept = oren_nayar_mean(roughness);
     return tint * tint * kept / (1.0 - tint * (1.0 - kept));

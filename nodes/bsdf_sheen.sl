@@ -3,14 +3,14 @@
 // Mode "conty_kulla": a microfacet lobe along the horizon. Distribution of Conty and Kulla 2017, eq. 2; visibility of
 // Neubelt and Pettineo 2013.
 
-float sheen_width(float roughness)
+inline float sheen_width(float roughness)
 {
     return clamp(roughness, 0.01, 1.0);
 }
 
 // Its directional albedo by quadrature, fitted by tools/fit. Narrow lobes reflect more than falls in along the
 // surface; what exceeds 1 is divided out of the lobe.
-float sheen_fit(float roughness, float NV)
+inline float sheen_fit(float roughness, float NV)
 {
     float r = sheen_width(roughness);
     return (3.35395 + NV * (1.91259 * NV - 6.35138) + r * (13.7158 - 4.94826 * NV - 0.698754 * r)) /
@@ -88,7 +88,7 @@ float fibre_density(float roughness, vector N, vector V, vector L)
 
 // Both modes.
 
-float sheen_albedo(float roughness, string mode, vector N, vector V)
+inline float sheen_albedo(float roughness, string mode, vector N, vector V)
 {
     float NV = clamp(dot(N, V), 0.0001, 1.0);
     return mode == "zeltner" ? fibre_albedo(roughness, NV) : clamp(sheen_fit(roughness, NV), 0.0, 1.0);

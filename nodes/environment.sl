@@ -6,8 +6,8 @@ vector environment_direction(vector d)
     return matrix33(environment_matrix) * d;
 }
 
-// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z. Rounding may
-// make d a little longer than 1, and asin must not see that.
+// Reads a latitude-longitude map: v = 0 is the zenith, u runs with the azimuth from -z. Rounding may make d a little
+// longer than 1, and asin must not see that.
 color environment_lookup(texture2d map, vector d, float level)
 {
     float u = 0.5 + 0.159154943 * atan2(d.x, -d.z);

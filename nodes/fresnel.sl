@@ -3,7 +3,7 @@
 
 // Admittance u + iw of an interface to the index n + ik for s-polarised light. It is what the cosine is compared with:
 // the amplitude of reflection is (c - y) / (c + y) with y = sqrt((n + ik)^2 - sin^2).
-void fresnel_admittance(float c, color n, color k, output color u, output color w)
+inline void fresnel_admittance(float c, color n, color k, output color u, output color w)
 {
     color t = n * n - k * k - (1.0 - c * c);
     color m = sqrt(t * t + 4.0 * n * n * k * k);
@@ -12,7 +12,7 @@ void fresnel_admittance(float c, color n, color k, output color u, output color 
 }
 
 // The same for p-polarised light: the admittance divided by (n + ik)^2.
-void fresnel_admittance_p(color n, color k, color u, color w, output color up, output color wp)
+inline void fresnel_admittance_p(color n, color k, color u, color w, output color up, output color wp)
 {
     color re = n * n - k * k;
     color im = 2.0 * n * k;
@@ -29,8 +29,8 @@ color fresnel_reflectance(float c, color u, color w)
     return toward / max(away, 1e-12);
 }
 
-// Reflectance of a conductor of index n + ik for unpolarised light; exact for positive c. Written out, the squares of the
-// amplitudes for p- and s-polarised light have a ratio that needs no further root.
+// Reflectance of a conductor of index n + ik for unpolarised light. Exact for positive cosines. Written out, the squares
+// of the amplitudes for p- and s-polarised light have a ratio that needs no further root.
 color fresnel_conductor(float c, color n, color k)
 {
     float c2 = c * c;
@@ -45,7 +45,7 @@ color fresnel_conductor(float c, color n, color k)
 }
 
 // Reflectance of a dielectric for unpolarised light; exact, 1 where reflection is total.
-float fresnel_dielectric(float c, float ior)
+inline float fresnel_dielectric(float c, float ior)
 {
     float n2 = max(ior * ior, 0.0001);
     float u = sqrt(max(n2 - 1.0 + c * c, 0.0));
@@ -70,7 +70,7 @@ void fresnel_curve(color F0, color F60, color F82, output color rise, output col
 
 // Response of the eye to interference of one order, as XYZ (Belcour and Barla 2017, eq. 10 and their numbers). It comes
 // from the phase difference at unit wave number and the shift at the interfaces, through four Gaussians in wave number.
-color interference(float phase, color shift)
+inline color interference(float phase, color shift)
 {
     color centre = color(1.6810e6, 1.7953e6, 2.2084e6);
     color width = color(4.3278e9, 9.3046e9, 6.6121e9);

@@ -5,12 +5,12 @@
 // Below this the lobe is a mirror to any picture, and its density would leave the range of float.
 vector microfacet_alpha(vector2 roughness)
 {
-    return vector(clamp(roughness.x, 0.0001, 1.0), clamp(roughness.y, 0.0001, 1.0), 1.0);
+    return vector(clamp(roughness, 0.0001, 1.0), 1.0);
 }
 
 // The frame in which roughness is given. An isotropic surface has no preferred tangent: its x is V laid down into the
 // surface, so that nothing needs the tangent of the mesh. Looking straight down, any x will do.
-void microfacet_frame(vector2 roughness, vector N, vector V, vector X, output vector x, output vector y)
+inline void microfacet_frame(vector2 roughness, vector N, vector V, vector X, output vector x, output vector y)
 {
     vector tangent = roughness.x == roughness.y ? V : X;
     tangent -= dot(tangent, N) * N;
@@ -22,7 +22,7 @@ void microfacet_frame(vector2 roughness, vector N, vector V, vector X, output ve
 // Direction number i over the cap of visible normals (Dupuy and Benyoub 2023, algorithm 2). The cap of the
 // unit sphere is that of a view s, stretched and made unit: the half vector, stretched, is s plus a point of the sphere.
 // Heights descend evenly; `azimuth` is a direction.
-vector microfacet_cap(int i, vector2 azimuth, float descent, vector s)
+inline vector microfacet_cap(int i, vector2 azimuth, float descent, vector s)
 {
     float z = 1.0 - (i + 0.5) * descent;
     return vector(azimuth * sqrt(1.0 - z * z), z) + s;
@@ -37,7 +37,7 @@ vector2 golden_turn(vector2 d)
 // The level of detail of samples, but for what differs from one to the next. Each of n samples covers 1 / (n pdf) of the
 // sphere (Krivanek and Colbert 2008; GPU Gems 3, chapter 20, eq. 13). Here pdf = ratio^2 / (2 pi ax ay (NV +
 // stretched)), where ratio = |h|^2 / |stretched h|^2 of an unnormalised half vector h.
-float microfacet_level(vector alpha, float reach)
+inline float microfacet_level(vector alpha, float reach)
 {
     float density = environment_samples / (6.28318531 * alpha.x * alpha.y * reach);
     return environment_mips - 2.5 - 0.5 * log2(density);
@@ -45,7 +45,7 @@ float microfacet_level(vector alpha, float reach)
 
 // Light from the direction d of the map, at the level for its sample. Halfway between two levels they are mixed, near
 // one of them it is read alone, which is much faster: the samples, each at a level of its own, mix the rest.
-color microfacet_lookup(vector d, float level, float ratio)
+inline color microfacet_lookup(vector d, float level, float ratio)
 {
     float r2 = ratio * ratio;
     // 1.00001 instead of 1: the poles keep a finite level.
@@ -55,11 +55,10 @@ color microfacet_lookup(vector d, float level, float ratio)
 }
 
 // E: what white GGX reflects in one bounce to a view at cosine NV. Fitted by tools/fit to E by quadrature.
-float microfacet_white(float NV, float alpha)
+inline float microfacet_white(float NV, float alpha)
 {
-    float scale = NV * alpha / (NV * NV + alpha * alpha * (0.669338 + 4.4736 * NV));
-    float lost = 0.179275 + NV * (0.0677313 - 0.519049 * NV) +
-                 alpha * (0.0766197 + NV * (1.88316 + 0.427862 * NV) + alpha * (2.18724 - 0.015081 * NV));
+    float scale = NV * alpha / (NV * NV + alpha * alpha * (0.792037 + 3.68834 * NV));
+    float lost = 0.218505 - 0.207071 * NV + alpha * (1.3982 * NV + 2.44659 * alpha);
     return clamp(1.0 - scale * lost, 0.01, 1.0);
 }
 
@@ -86,7 +85,7 @@ float microfacet_stretch(float alpha, float c)
 
 // Reflectance at cosine c. A clear interface has its exact one between base and base + rise. Others follow a curve
 // (fresnel_curve), which has the exponent 5 unless a material says otherwise.
-color microfacet_fresnel(boolean clear, float ior, color base, color rise, color bend, color dip, float exponent,
+inline color microfacet_fresnel(boolean clear, float ior, color base, color rise, color bend, color dip, float exponent,
                          float c)
 {
     float t = max(1.0 - c, 0.0);
@@ -97,9 +96,9 @@ color microfacet_fresnel(boolean clear, float ior, color base, color rise, color
     return known(clear) ? F : clamp(F, 0.0, 1.0);
 }
 
-// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+// The environment's light by n visible normals, which mirror it or refract it.
 //
-// Mirrored light weighs G2 / G1, and the sum is divided by the sum of these weights and multiplied by the directional
+// What refracts is a solid sphere (microfacet_refraction). Mirrored light weighs G2 / G1, and the sum is divided by the sum of these weights and multiplied by the directional
 // albedo: so a white furnace gains nothing at any n. After Turquin 2019 the albedo is that of one bounce, E times the
 // mean reflectance, and of all further ones, which lose what is missing in E but for a further factor of mean
 // reflectance. E, the share that a white surface mirrors in one bounce, comes from the same samples.
@@ -154,9 +153,11 @@ void microfacet_light(vector2 roughness, boolean refracts, boolean retroreflecti
     }
     float E = min(total * reach / count, 1.0);
     color once = share / total;
-    // What an anisotropic lobe throws below the horizon beyond what an isotropic one would is lost, as shadows are.
-    float white = isotropic ? E : microfacet_white(NV, mean);
-    color bounces = refracts ? color(1.0) : mix(once, color(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
+    // What an anisotropic lobe throws below the horizon beyond what an isotropic one would is lost, as shadows are. This
+    // makes 1 of refracted light, of which nothing is lost, too.
+    float white = refracts || isotropic ? E : microfacet_white(NV, mean);
+    color kept = mix(once, color(1.0), white) * (known(isotropic) ? 1.0 : min(E / white, 1.0));
+    color bounces = known(refracts) && refracts ? color(1.0) : kept;
     radiance = light * (bounces / total);
     albedo = once * bounces;
 }

@@ -72,7 +72,7 @@ TEST(Options, TransparencyGivesAlphaAndDiscards) {
     EXPECT_FALSE(has(make(ghost, "s", how).shader.pixel, "discard"));
     how.transparency = true;
     Shader shader = make(ghost, "s", how).shader;
-    EXPECT_TRUE(has(shader.pixel, "< u_alphaThreshold)\n        discard;")) << shader.pixel;
+    EXPECT_TRUE(has(shader.pixel, "< u_alphaThreshold)\n\t\tdiscard;")) << shader.pixel;
     // Whatever is no surface has no opacity.
     EXPECT_FALSE(has(make("<constant name=\"c\" type=\"color3\"/>", "c", how).shader.pixel, "discard"));
 }
@@ -84,10 +84,9 @@ TEST(Options, BlocksAreLaidOutAsReflectionSays) {
     EXPECT_FALSE(has(single.pixel, "std140") || has(single.pixel, "binding"));
     how.blocks = true;
     Shader shader = make(kCar, "s", how).shader;
-    EXPECT_TRUE(has(shader.pixel, "layout(std140) uniform PublicUniforms\n{\n    float s_base;\n};")) << shader.pixel;
-    EXPECT_TRUE(has(shader.pixel, "layout(std140) uniform PrivateUniforms\n{\n    vec3 u_viewPosition;"))
-        << shader.pixel;
-    EXPECT_TRUE(has(shader.vertex, "layout(std140) uniform PrivateUniforms\n{\n    vec3 u_viewPosition;"))
+    EXPECT_TRUE(has(shader.pixel, "layout(std140) uniform PublicUniforms\n{\n\tfloat s_base;\n};")) << shader.pixel;
+    EXPECT_TRUE(has(shader.pixel, "layout(std140) uniform PrivateUniforms\n{\n\tvec3 u_viewPosition;")) << shader.pixel;
+    EXPECT_TRUE(has(shader.vertex, "layout(std140) uniform PrivateUniforms\n{\n\tvec3 u_viewPosition;"))
         << shader.vertex;
     ASSERT_EQ(shader.blocks.size(), 2u);
     EXPECT_EQ(shader.blocks[0].name, "PrivateUniforms");

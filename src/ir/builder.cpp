@@ -286,6 +286,7 @@ Type resultType(Op op, std::span<const Type> t) {
 
 std::vector<std::uint32_t> loopsOf(const Function& f) {
     std::vector<std::uint32_t> inside(f.exprs.size(), kNoLoop);
+    if (!f.loops) return inside;
     // Of each loop, the one around it; known from what its body takes from that, even where its operands take nothing.
     std::vector<std::uint32_t> outer(f.loops, kNoLoop);
     auto innermost = [](std::uint32_t a, std::uint32_t b) {

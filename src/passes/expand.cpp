@@ -27,16 +27,23 @@ struct Expanded {
 struct Expander {
     Module& module;
     std::function<bool(const Function&)> isWanted;
+    std::unordered_map<Name, const Function*> wanted{};  // by callee, null for what stays a call
     int depth = 0;
+
+    // The function to expand a call of, or none.
+    const Function* wantedOf(const Expr& e) {
+        if (e.op != Op::Call) return nullptr;
+        auto [at, isNew] = wanted.try_emplace(Name(e.payload), nullptr);
+        if (!isNew) return at->second;
+        const Function* callee = module.find(at->first);
+        return at->second = callee && isWanted(*callee) ? callee : nullptr;
+    }
 
     // The function anew, with every call of a wanted function expanded.
     void rewrite(Name name) {
         const Function* old = module.findOwn(name);
         ensure(old, "no function to expand in");
-        auto expands = [&](const Expr& e) {
-            const Function* callee = e.op == Op::Call ? module.find(Name(e.payload)) : nullptr;
-            return callee && isWanted(*callee);
-        };
+        auto expands = [&](const Expr& e) { return wantedOf(e) != nullptr; };
         if (std::none_of(old->exprs.begin(), old->exprs.end(), expands)) return;
         Function fresh = headOf(*old);
         Builder b(module, fresh);
@@ -57,11 +64,11 @@ struct Expander {
         for (std::uint32_t i = 0; i < from.exprs.size(); i++) {
             ExprId id(i);
             const Expr& e = from.exprs[i];
-            const Function* callee = e.op == Op::Call ? module.find(Name(e.payload)) : nullptr;
+            const Function* callee = depth < kMaxDepth ? wantedOf(e) : nullptr;
             if (e.op == Op::Param) {
                 copy.set(id, arguments[e.payload]);
                 isSame[i] = depth == 0;
-            } else if (callee && depth < kMaxDepth && isWanted(*callee)) {
+            } else if (callee) {
                 auto operands = copy.operands(id);
                 std::vector<ExprId> given(operands.begin(), operands.end());
                 Expanded& made = calls[i];

@@ -1,6 +1,7 @@
 #include "passes/gather.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -24,20 +25,53 @@ struct Literal {
     friend bool operator==(const Literal&, const Literal&) = default;
 };
 
-// What certainly holds where a value is needed; nothing is known of a value that is not.
-struct Need {
-    bool known = false;
-    std::vector<Literal> literals;  // sorted
+// Lists of what certainly holds somewhere, by number; nothing does in number 0.
+class Facts {
+  public:
+    const std::vector<Literal>& operator[](std::uint32_t number) const { return lists_[number]; }  // sorted
+
+    // One list and a literal more.
+    std::uint32_t with(std::uint32_t number, Literal literal) {
+        return made({number, literal.condition.index, literal.holds}, [&] {
+            std::vector<Literal> all = lists_[number];
+            auto at = std::lower_bound(all.begin(), all.end(), literal);
+            if (at == all.end() || *at != literal) all.insert(at, literal);
+            return all;
+        });
+    }
+    // What holds in both of two.
+    std::uint32_t common(std::uint32_t one, std::uint32_t other) {
+        if (one == other) return one;
+        return made({one, other, 2}, [&] {
+            const auto &x = lists_[one], &y = lists_[other];
+            std::vector<Literal> both;
+            std::set_intersection(x.begin(), x.end(), y.begin(), y.end(), std::back_inserter(both));
+            return both;
+        });
+    }
+
+  private:
+    template <class Make>
+    std::uint32_t made(std::array<std::uint32_t, 3> how, Make&& make) {
+        auto [at, isNew] = made_.try_emplace(how, static_cast<std::uint32_t>(lists_.size()));
+        if (isNew) lists_.push_back(make());
+        return at->second;
+    }
+
+    std::vector<std::vector<Literal>> lists_{{}};
+    std::map<std::array<std::uint32_t, 3>, std::uint32_t> made_;
 };
+
+constexpr std::uint32_t kNone = 0xffffffffu, kShared = kNone - 1;
 
 // Calls of one function.
 struct Group {
     Name callee;
     std::vector<ExprId> calls;
-    bool isApart = false;  // its calls stay as they are
+    bool isApart = false;          // its calls stay as they are
+    std::uint32_t within = kNone;  // the group in whose loop its calls are made
 };
 
-constexpr std::uint32_t kNone = 0xffffffffu, kShared = kNone - 1;
 constexpr int kLongWork = 40;  // operations that are worth a loop around two calls, to have them once
 constexpr int kMaxDepth = 24;  // of expressions that are looked through to find what two have in common
 
@@ -60,12 +94,15 @@ struct Gatherer {
     std::size_t n = from.exprs.size();
     std::vector<bool> live = reachable(from);
     std::vector<std::uint32_t> loopOf = loopsOf(from);
-    std::vector<Need> needs = std::vector<Need>(n);
-    std::vector<bool> afterCall = std::vector<bool>(n);  // depends on a call that may be gathered
+    Facts facts{};
+    std::vector<std::uint32_t> needs = std::vector<std::uint32_t>(n, kNone);  // what holds where a value is needed
+    std::vector<char> afterCall = std::vector<char>(n);                       // depends on a call that may be gathered
     std::vector<Group> groups{};
     std::vector<std::uint32_t> groupOf = std::vector<std::uint32_t>(n, kNone);
-    std::vector<std::uint32_t> ownerOf = std::vector<std::uint32_t>(n, kNone);
-    std::vector<std::vector<ExprId>> resultsOf = std::vector<std::vector<ExprId>>(n);  // of calls with several
+    std::vector<std::uint32_t> ownerOf{}, userOf{};                            // see findOwners
+    std::vector<std::uint32_t> within = std::vector<std::uint32_t>(n, kNone);  // group in whose loop it is computed
+    std::map<ExprId, std::vector<ExprId>> resultsOf{};                         // of calls with several
+    std::vector<ExprId> needed{};                                              // see neededBy
     Function fresh{};
     Builder b{module, fresh};
     Copy copy{from, b};
@@ -76,9 +113,10 @@ struct Gatherer {
         dropUnworthy();
         if (groups.empty()) return false;
         std::vector<std::uint32_t> order;
-        while (!sort(order)) {
-        }
-        findOwners();
+        do {
+            findOwners();
+            findInner();
+        } while (!sort(order));
         fresh.name = from.name;
         fresh.params = from.params;
         fresh.comment = from.comment;
@@ -87,87 +125,118 @@ struct Gatherer {
         return true;
     }
 
-    bool isCandidate(ExprId e) const {
-        if (from[e].op != Op::Call || loopOf[e.index] != kNoLoop) return false;
-        const Function* callee = module.find(Name(from[e].payload));
-        return callee && (holdsLoop(*callee) || workOf(module, *callee) >= kLongWork);
-    }
-
     void findCalls() {
-        std::map<Name, std::uint32_t> byName;
+        std::map<Name, std::uint32_t> byName;  // kNone for what is not worth a loop
         for (std::uint32_t i = 0; i < n; i++) {
             if (!live[i]) continue;
             ExprId e(i);
-            for (ExprId o : from.operandsOf(e)) afterCall[i] = afterCall[i] || afterCall[o.index];
-            if (from[e].op == Op::Result) resultsOf[from.operand(e, 0).index].push_back(e);
-            if (!isCandidate(e)) continue;
-            auto [at, isNew] = byName.emplace(Name(from[e].payload), static_cast<std::uint32_t>(groups.size()));
-            if (isNew) groups.push_back({at->first, {}, false});
+            for (ExprId o : from.operandsOf(e)) afterCall[i] |= afterCall[o.index];
+            if (from[e].op == Op::Result && groupOf[from.operand(e, 0).index] != kNone)
+                resultsOf[from.operand(e, 0)].push_back(e);
+            if (from[e].op != Op::Call || loopOf[i] != kNoLoop) continue;
+            auto [at, isNew] = byName.emplace(Name(from[e].payload), kNone);
+            if (isNew && isWorthLoop(at->first)) {
+                at->second = static_cast<std::uint32_t>(groups.size());
+                groups.push_back({at->first, {}});
+            }
+            if (at->second == kNone) continue;
             groups[at->second].calls.push_back(e);
             groupOf[i] = at->second;
             afterCall[i] = true;
         }
     }
 
+    bool isWorthLoop(Name name) const {
+        const Function* callee = module.find(name);
+        return callee && (holdsLoop(*callee) || workOf(module, *callee) >= kLongWork);
+    }
+
     // From users to operands: a value is needed where one of its users is. Of several ways only what holds on all
     // counts.
     void findNeeds() {
-        for (const ResultValue& r : from.results) needs[r.value.index].known = true;
+        for (const ResultValue& r : from.results) needs[r.value.index] = 0;
         for (std::uint32_t i = static_cast<std::uint32_t>(n); i-- > 0;) {
             if (!live[i]) continue;
             auto operands = from.operandsOf(ExprId(i));
             bool isChoice =
                 from.exprs[i].op == Op::Select && !afterCall[operands[0].index] && loopOf[operands[0].index] == kNoLoop;
             for (std::size_t k = 0; k < operands.size(); k++) {
-                std::vector<Literal> here = needs[i].literals;
-                if (isChoice && k > 0) {
-                    here.push_back({operands[0], k == 1});
-                    std::sort(here.begin(), here.end());
-                    here.erase(std::unique(here.begin(), here.end()), here.end());
-                }
-                meet(needs[operands[k].index], std::move(here));
+                const std::uint32_t here = isChoice && k > 0 ? facts.with(needs[i], {operands[0], k == 1}) : needs[i];
+                std::uint32_t& need = needs[operands[k].index];
+                need = need == kNone ? here : facts.common(need, here);
             }
         }
     }
 
-    static void meet(Need& need, std::vector<Literal> literals) {
-        if (need.known) {
-            std::vector<Literal> both;
-            std::set_intersection(need.literals.begin(), need.literals.end(), literals.begin(), literals.end(),
-                                  std::back_inserter(both));
-            literals = std::move(both);
-        }
-        need = {true, std::move(literals)};
-    }
+    // What certainly holds where a value that is needed is.
+    const std::vector<Literal>& known(ExprId e) const { return facts[needs[e.index]]; }
 
     void dropUnworthy() {
         std::size_t left = 0;
         for (Group& g : groups) {
-            bool isAlways =
-                std::all_of(g.calls.begin(), g.calls.end(), [&](ExprId c) { return needs[c.index].literals.empty(); });
+            bool isAlways = std::all_of(g.calls.begin(), g.calls.end(), [&](ExprId c) { return known(c).empty(); });
             g.isApart = isAlways || (g.calls.size() == 1 && !holdsLoop(*module.find(g.callee)));
             left += !g.isApart;
         }
         if (left == 0) groups.clear();
     }
 
-    // Which group's calls alone use a value.
+    // Which group's calls alone use a value, and which call of it alone.
     void findOwners() {
-        for (const ResultValue& r : from.results) ownerOf[r.value.index] = kShared;
+        ownerOf.assign(n, kNone);
+        userOf.assign(n, kNone);
+        for (const ResultValue& r : from.results) ownerOf[r.value.index] = userOf[r.value.index] = kShared;
+        auto add = [](std::uint32_t& of, std::uint32_t one) { of = of == kNone || of == one ? one : kShared; };
         for (std::uint32_t i = static_cast<std::uint32_t>(n); i-- > 0;) {
             if (!live[i]) continue;
-            std::uint32_t owner = loopFor(ExprId(i)) == kNone ? ownerOf[i] : groupOf[i];
+            const bool isCall = loopFor(ExprId(i)) != kNone;
             for (ExprId o : from.operandsOf(ExprId(i))) {
-                std::uint32_t& of = ownerOf[o.index];
-                of = of == kNone || of == owner ? owner : kShared;
+                add(ownerOf[o.index], isCall ? groupOf[i] : ownerOf[i]);
+                add(userOf[o.index], isCall ? i : userOf[i]);
             }
         }
+    }
+
+    // Groups each of whose calls serves one call of another group: that group's loop makes them, and what comes of
+    // them.
+    void findInner() {
+        within.assign(n, kNone);
+        for (Group& g : groups) g.within = kNone;
+        for (Group& g : groups) {
+            const std::uint32_t outer = ownerOf[g.calls[0].index];
+            if (g.isApart || outer >= groups.size() || groups[outer].within != kNone || !servesOneEach(g, outer))
+                continue;
+            g.within = outer;
+            for (ExprId c : g.calls) within[c.index] = outer;
+        }
+        for (std::uint32_t i = 0; i < n; i++)
+            if (live[i] && loopFor(ExprId(i)) == kNone)
+                for (ExprId o : from.operandsOf(ExprId(i)))
+                    if (within[o.index] != kNone) within[i] = within[o.index];
+    }
+
+    bool servesOneEach(const Group& g, std::uint32_t outer) const {
+        std::vector<std::uint32_t> users;
+        for (ExprId c : g.calls) {
+            if (ownerOf[c.index] != outer || userOf[c.index] == kShared) return false;
+            for (ExprId o : from.operandsOf(c))
+                if (afterCall[o.index]) return false;
+            users.push_back(userOf[c.index]);
+        }
+        std::sort(users.begin(), users.end());
+        return std::adjacent_find(users.begin(), users.end()) == users.end();
     }
 
     // The group whose loop gives an expression, or none.
     std::uint32_t loopFor(ExprId e) const {
         std::uint32_t g = groupOf[e.index];
         return g == kNone || groups[g].isApart ? kNone : g;
+    }
+
+    // What gives an expression in the order: itself or, above those, a loop.
+    std::uint32_t unitOf(ExprId e) const {
+        const std::uint32_t g = within[e.index] != kNone ? within[e.index] : loopFor(e);
+        return g == kNone ? e.index : static_cast<std::uint32_t>(n) + g;
     }
 
     // All that is needed, in an order in which a loop follows what any of its calls needs: expressions by their number,
@@ -177,7 +246,7 @@ struct Gatherer {
         std::vector<std::uint8_t> state(n + groups.size(), New);
         std::vector<std::pair<std::uint32_t, bool>> stack;  // unit, and whether what it needs stands in the order
         auto push = [&](ExprId e) {
-            std::uint32_t g = loopFor(e), unit = g == kNone ? e.index : static_cast<std::uint32_t>(n) + g;
+            std::uint32_t unit = unitOf(e);
             if (state[unit] == Open) {  // a ring, which only a group can have closed
                 auto open = std::find_if(stack.rbegin(), stack.rend(), [&](const auto& entry) {
                     return entry.first >= n && state[entry.first] == Open;
@@ -209,19 +278,25 @@ struct Gatherer {
         return true;
     }
 
-    std::vector<ExprId> neededBy(std::uint32_t unit) const {
-        std::vector<ExprId> all;
+    const std::vector<ExprId>& neededBy(std::uint32_t unit) {
+        std::vector<ExprId>& all = needed;
+        all.clear();
         auto add = [&](ExprId e) {
-            for (ExprId o : from.operandsOf(e)) all.push_back(o);
+            for (ExprId o : from.operandsOf(e))
+                if (unit < n || unitOf(o) != unit) all.push_back(o);
         };
         if (unit < n) {
             add(ExprId(unit));
             return all;
         }
-        for (ExprId call : groups[unit - n].calls) {
-            add(call);
-            for (const Literal& l : needs[call.index].literals) all.push_back(l.condition);
-        }
+        for (const Group& g : groups)
+            if (&g == &groups[unit - n] || g.within == unit - n)
+                for (ExprId call : g.calls) {
+                    add(call);
+                    for (const Literal& l : known(call)) all.push_back(l.condition);
+                }
+        for (std::uint32_t i = 0; i < n; i++)
+            if (within[i] == unit - n) add(ExprId(i));
         return all;
     }
 
@@ -230,8 +305,10 @@ struct Gatherer {
         auto o = from.operandsOf(e);
         if (from[e].op == Op::Select && isNull(o[2]) && vanishes(o[1], {o[0], true}))
             copy.set(e, copy[o[1]]);
-        else
+        else if (afterCall[e.index])
             copy.one(e);
+        else
+            copy.raw(e);  // as simple as it was
     }
 
     bool isNull(ExprId e) const {
@@ -261,7 +338,7 @@ struct Gatherer {
     bool vanishesBy(ExprId e, Literal literal, const std::map<std::uint32_t, bool>& of) const {
         if (from[e].op == Op::Result || from[e].op == Op::Call) {
             ExprId call = from[e].op == Op::Result ? from.operand(e, 0) : e;
-            const auto& literals = needs[call.index].literals;
+            const auto& literals = known(call);
             return loopFor(call) != kNone && std::binary_search(literals.begin(), literals.end(), literal);
         }
         if (!afterCall[e.index]) return isNull(e);
@@ -285,19 +362,27 @@ struct Gatherer {
         }
     }
 
-    // The conditions of a call in one.
-    ExprId conditionOf(ExprId call) {
+    // The conditions of a call in one, but for some.
+    ExprId conditionOf(ExprId call, const std::vector<Literal>& but = {}) {
         ExprId all = b.boolean(true);
-        for (const Literal& l : needs[call.index].literals) {
+        for (const Literal& l : known(call)) {
+            if (std::binary_search(but.begin(), but.end(), l)) continue;
             ExprId c = copy[l.condition];
             if (Name hint = from.hints[l.condition.index])
-                b.rename(c, name(fmt::format("{}_is_used", module.names->text(hint))));
+                b.rename(c, name(fmt::format("has_{}", module.names->text(hint))));
             all = b.op(Op::And, {all, l.holds ? c : b.op(Op::Not, {c})});
         }
         return all;
     }
 
     Name name(std::string_view text) { return module.names->intern(text); }
+
+    // The turns of a group's loop: which call is made, and whether it is a certain one, where that was asked.
+    struct Turns {
+        const Group& group;
+        ExprId which;
+        std::vector<ExprId> is = std::vector<ExprId>(group.calls.size());
+    };
 
     void loop(Group& g) {
         std::vector<ExprId> conditions;
@@ -314,12 +399,16 @@ struct Gatherer {
         ExprId which = calls == 1 ? b.integer(0) : b.loopIndex(number);
         std::vector<ExprId> first, next, slots;
         if (!isAll) {
-            which = b.loopCarried(number, 0, Type::Integer);
-            first.push_back(following(conditions, {}));
-            next.push_back(following(conditions, which));
+            ExprId last = b.loopCarried(number, 0, Type::Integer);
+            b.hint(last, name("last"));
+            which = following(conditions, last);
+            first.push_back(b.integer(-1));
+            next.push_back(which);
         }
         if (calls > 1) b.hint(which, name("which"));
-        ExprId made = call(g, which);
+        Turns turns{g, which};
+        makeInner(turns);
+        ExprId made = call(g.calls, {turns, groupOf[g.calls[0].index], {}, {}});
         for (std::size_t k = 0; k < calls; k++)
             for (ExprId result : resultsIn(g.calls[k])) {
                 Type type = from[result].type;
@@ -327,7 +416,7 @@ struct Gatherer {
                 ExprId now = from[result].op == Op::Result ? b.result(made, from[result].payload, type) : made;
                 if (from.hints[result.index]) b.hint(old, from.hints[result.index]);
                 first.push_back(b.null(type));
-                next.push_back(calls > 1 ? b.select(isTurn(g, which, k, k + 1), now, old) : now);
+                next.push_back(calls > 1 ? b.select(isTurn(turns, k, k + 1), now, old) : now);
                 slots.push_back(result);
             }
         ExprId whole = b.endLoop(number, count, first, next);
@@ -340,34 +429,91 @@ struct Gatherer {
             if (!copy[c]) copy.set(c, whole);
     }
 
-    // What is read of a call: its results, or its one result.
-    std::vector<ExprId> resultsIn(ExprId call) const {
-        return from[call].type == Type::Tuple ? resultsOf[call.index] : std::vector{call};
+    // In a turn of a group's loop, what its call needs of other groups, and what comes of that.
+    void makeInner(Turns& turns) {
+        const std::uint32_t number = groupOf[turns.group.calls[0].index];
+        for (const Group& g : groups)
+            if (g.within == number) innerLoop(turns, g);
+        for (std::uint32_t i = 0; i < n; i++)
+            if (within[i] == number && loopFor(ExprId(i)) == kNone) one(ExprId(i));
     }
 
-    // The first call to make after call number `which`, or of all.
+    // A loop of at most one turn, of which the call stays 0 unless the turn around it needs one.
+    void innerLoop(Turns& turns, const Group& g) {
+        const Group& outer = turns.group;
+        std::vector<ExprId> calls(outer.calls.size(), g.calls[0]);  // by turn
+        ExprId some = b.boolean(false), count = some, condition;
+        bool isOneCondition = true;
+        for (std::size_t k = 0; k < outer.calls.size(); k++) {
+            auto at = std::find_if(g.calls.begin(), g.calls.end(),
+                                   [&](ExprId c) { return userOf[c.index] == outer.calls[k].index; });
+            if (at == g.calls.end()) continue;
+            calls[k] = *at;
+            ExprId now = conditionOf(*at, known(outer.calls[k]));
+            ExprId is = isTurn(turns, k, k + 1);
+            isOneCondition = isOneCondition && (!condition || condition == now);
+            condition = now;
+            some = b.op(Op::Or, {some, is});
+            count = b.op(Op::Or, {count, b.op(Op::And, {is, now})});
+        }
+        if (isOneCondition) count = b.op(Op::And, {condition, some});
+        std::uint32_t number = b.beginLoop();
+        ExprId made = call(calls, {turns, groupOf[g.calls[0].index], {}, {}});
+        std::map<std::uint32_t, std::uint32_t> slots;  // by result
+        std::vector<ExprId> first, next;
+        for (ExprId c : g.calls)
+            for (ExprId result : resultsIn(c)) {
+                const bool isPart = from[result].op == Op::Result;
+                const std::uint32_t k = isPart ? from[result].payload : 0;
+                if (!slots.emplace(k, static_cast<std::uint32_t>(first.size())).second) continue;
+                const Type type = from[result].type;
+                ExprId old = b.loopCarried(number, static_cast<std::uint32_t>(first.size()), type);
+                if (from.hints[result.index]) b.hint(old, from.hints[result.index]);
+                first.push_back(b.null(type));
+                next.push_back(isPart ? b.result(made, k, type) : made);
+            }
+        ExprId whole = b.endLoop(number, b.convert(count, Type::Integer), first, next);
+        for (ExprId c : g.calls) {
+            for (ExprId result : resultsIn(c)) {
+                const std::uint32_t k = from[result].op == Op::Result ? from[result].payload : 0;
+                copy.set(result, b.result(whole, slots[k], from[result].type));
+                if (from.hints[result.index]) b.hint(copy[result], from.hints[result.index]);
+            }
+            if (!copy[c]) copy.set(c, whole);
+        }
+    }
+
+    // What is read of a call: its results, or its one result.
+    std::vector<ExprId> resultsIn(ExprId call) const {
+        return from[call].type == Type::Tuple ? resultsOf.at(call) : std::vector{call};
+    }
+
+    // The first call to make after call number `which`, -1 before all.
     ExprId following(const std::vector<ExprId>& conditions, ExprId which) {
         std::size_t last = conditions.size() - 1;
         ExprId found = b.integer(static_cast<int>(last));
-        for (std::size_t k = last; k-- > (which ? 1u : 0u);) {
-            ExprId now = conditions[k];
-            if (which) now = b.op(Op::And, {b.op(Op::Less, {which, b.integer(static_cast<int>(k))}), now});
-            found = b.select(now, b.integer(static_cast<int>(k)), found);
+        for (std::size_t k = last; k-- > 0;) {
+            ExprId isAfter = b.op(Op::Less, {which, b.integer(static_cast<int>(k))});
+            found = b.select(b.op(Op::And, {isAfter, conditions[k]}), b.integer(static_cast<int>(k)), found);
         }
         return found;
     }
 
     // What the conditions of a call are called after, if anything.
     Name nameOf(ExprId call) const {
-        for (const Literal& l : needs[call.index].literals)
+        for (const Literal& l : known(call))
             if (Name hint = from.hints[l.condition.index]) return hint;
         return {};
     }
 
     // Whether this turn makes one of the calls from `begin` up to `end`.
-    ExprId isTurn(const Group& g, ExprId which, std::size_t begin, std::size_t end) {
+    ExprId isTurn(Turns& turns, std::size_t begin, std::size_t end) {
+        const Group& g = turns.group;
+        const ExprId which = turns.which;
         if (end == begin + 1) {
-            ExprId is = b.op(Op::Equal, {which, b.integer(static_cast<int>(begin))});
+            ExprId& is = turns.is[begin];
+            if (is) return is;
+            is = b.op(Op::Equal, {which, b.integer(static_cast<int>(begin))});
             if (Name hint = nameOf(g.calls[begin])) b.hint(is, name(fmt::format("is_{}", module.names->text(hint))));
             return is;
         }
@@ -376,28 +522,28 @@ struct Gatherer {
         return begin == 0 ? below : end == g.calls.size() ? from0 : b.op(Op::And, {from0, below});
     }
 
-    // The call of a turn.
-    ExprId call(const Group& g, ExprId which) {
-        const Expr& e = from[g.calls[0]];
-        Turn turn{groupOf[g.calls[0].index], which, {}, {}};
-        std::vector<ExprId> arguments;
-        for (std::size_t p = 0; p < e.operandCount; p++) {
-            std::vector<ExprId> given;
-            for (ExprId c : g.calls) given.push_back(from.operand(c, p));
-            ExprId value = merged(turn, given, 0);
-            if (!isSame(given)) b.hint(value, module.find(g.callee)->params[p].name);
-            arguments.push_back(value);
-        }
-        return b.call(g.callee, e.type, arguments);
-    }
-
     // Of the values that the calls of a group take for something, the one for this turn.
     struct Turn {
-        std::uint32_t group;
-        ExprId which;
+        Turns& of;
+        std::uint32_t group;  // that is called
         std::map<std::vector<ExprId>, int> gains;
         std::map<std::vector<ExprId>, ExprId> made;
     };
+
+    // The call of a turn, one of `calls`.
+    ExprId call(const std::vector<ExprId>& calls, Turn turn) {
+        const Expr& e = from[calls[0]];
+        const Name callee(e.payload);
+        std::vector<ExprId> arguments;
+        for (std::size_t p = 0; p < e.operandCount; p++) {
+            std::vector<ExprId> given;
+            for (ExprId c : calls) given.push_back(from.operand(c, p));
+            ExprId value = merged(turn, given, 0);
+            if (!isSame(given)) b.hint(value, module.find(callee)->params[p].name);
+            arguments.push_back(value);
+        }
+        return b.call(callee, e.type, arguments);
+    }
 
     bool isSame(const std::vector<ExprId>& given) const {
         return std::all_of(given.begin(), given.end(), [&](ExprId x) { return copy[x] == copy[given[0]]; });
@@ -468,7 +614,7 @@ struct Gatherer {
     }
 
     // By selects: what most calls take is what a call takes unless it is another's turn.
-    ExprId chosen(const Turn& turn, const std::vector<ExprId>& all) {
+    ExprId chosen(Turn& turn, const std::vector<ExprId>& all) {
         std::vector<ExprId> given;
         for (ExprId x : all) given.push_back(copy[x]);
         auto times = [&](ExprId x) { return std::count(given.begin(), given.end(), x); };
@@ -478,8 +624,7 @@ struct Gatherer {
         for (std::size_t end = given.size(); end > 0;) {
             std::size_t begin = end - 1;
             while (begin > 0 && given[begin - 1] == given[end - 1]) begin--;
-            if (given[begin] != usual)
-                value = b.select(isTurn(groups[turn.group], turn.which, begin, end), given[begin], value);
+            if (given[begin] != usual) value = b.select(isTurn(turn.of, begin, end), given[begin], value);
             end = begin;
         }
         return value;

@@ -18,17 +18,20 @@ bool leadsTo(const ir::Module& module, const ir::Function& f, bool (*what)(const
 // are the calls that are needed, in their order:
 //
 //     int calls = int(a) + int(b);                        how many
-//     int which = a ? 0 : 1;                              the first
+//     int last = -1;
 //     for (int i = 0; i < calls; i++) {
+//         int which = a && last < 0 ? 0 : 1;              the next
 //         x = f(which == 0 ? of_first : of_second, …);
+//         last = which;
 //         first = which == 0 ? x : first;                 what is not called stays 0
 //         second = which == 1 ? x : second;
-//         which = 1;                                      the next
 //     }
+//
+// Calls of another function each of which serves one of these calls alone become a loop of at most one turn inside.
 //
 // A call that is needed under a condition, and whose function is called once, becomes a loop of at most one turn. What
 // is needed always, and calls that need each other's results, stay as they are. A select that gave 0 where its call is
-// not needed goes. Where a condition has a name, what it decides is called after it: NAME_is_used, is_NAME. `entry` is
+// not needed goes. Where a condition has a name, what it decides is called after it: has_NAME, is_NAME. `entry` is
 // one of the module's own functions.
 void gather(ir::Module& module, Name entry);
 

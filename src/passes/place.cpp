@@ -28,7 +28,9 @@ bool isFree(const Function& f, ExprId id) {
             return of.op <= Op::Uniform || of.op == Op::LoopArg || of.op == Op::Result;
         }
         case Op::Make:
-            return e.operandCount == 1 && f.isConstant(f.operand(id, 0));
+            // of one number
+            return e.operandCount == 1 &&
+                   (f[f.operand(id, 0)].op <= Op::Uniform || f[f.operand(id, 0)].op == Op::LoopArg);
         default:
             return false;  // everything that computes
     }
@@ -292,6 +294,17 @@ struct Placer {
         return values[of].named || isStatement(of);
     }
 
+    // What a side of a select computes is named: written into the select, it makes a branch of that in most compilers
+    // of shading languages.
+    void nameSides(std::span<const ExprId> operands) {
+        for (ExprId side : operands.subspan(1)) {
+            Value& v = values[side.index];
+            const Expr& e = f[side];
+            const bool isSimple = v.free || v.work <= 1 || isView(side.index) || e.op == Op::Select;
+            if (!isSimple && !isStatement(side.index) && e.op != Op::TextureGrad) v.named = true;
+        }
+    }
+
     // Splits long expressions: names the longest part, one with a name of its own before others.
     void nameLong() {
         constexpr int kName = 8, kOperation = 4;
@@ -307,6 +320,7 @@ struct Placer {
             }
             if (isStatement(i)) continue;  // its operands stand in lines of their own
             auto operands = f.operandsOf(f.exprs[i]);
+            if (f.exprs[i].op == Op::Select) nameSides(operands);
             bool isCall = f.exprs[i].op == Op::Call;
             int own =
                 isCall ? kOperation + stemLength(Name(f.exprs[i].payload)) + 2 * f.exprs[i].operandCount : kOperation;
@@ -326,7 +340,8 @@ struct Placer {
                     }
                 }
                 values[i].length = sum;
-                if (sum <= options.longestText || !longest) break;
+                const bool isPart = f.exprs[i].op == Op::Swizzle || f.exprs[i].op == Op::Retype;
+                if (sum <= options.longestText || !longest || isPart) break;
                 values[longest.index].named = true;
             }
         }

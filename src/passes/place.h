@@ -10,7 +10,7 @@ struct PlaceOptions {
     // level, do not need these derivatives as values (a target may read them with its own implicit ones).
     bool isEntry = false;
     // An expression whose text would be longer than this many characters is split by naming parts of it.
-    int longestText = 90;
+    int longestText = 120;
     // To know how long names are.
     const NameTable* names = nullptr;
 };

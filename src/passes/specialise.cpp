@@ -402,8 +402,9 @@ struct Specialiser {
         Clone& made = found->second;
         if (!isNew) return made;
         made.key = &found->first;
-        make(callee, found->first, frame, made.function);
+        if (!takeWhole(callee, found->first, made.function)) make(callee, found->first, frame, made.function);
         if (isSmall(made.function)) return made;  // is expanded where it is called and needs no name
+        made.function.isApart = true;
         // A name that no text has; the module's copy gets one that does.
         const std::uint32_t first = &all == &own ? kNameless + kOwn : kNameless;
         made.function.name = Name(first + static_cast<std::uint32_t>(all.named.size()));
@@ -412,7 +413,44 @@ struct Specialiser {
         return made;
     }
 
+    // A function in which there is nothing to expand, and of whose arguments nothing is known, stays as it is, but that
+    // it calls clones. False where it does not.
+    bool takeWhole(const Function& callee, const Key& key, Function& whole) {
+        bool isOpen = callee.isApart && !isPartial;
+        eachArgument(key, [&](std::uint32_t, const Argument& a) { isOpen = isOpen && a.shape == Shape::Any; });
+        for (std::size_t i = 0; isOpen && i < callee.exprs.size(); i++) isOpen = staysAsItIs(callee, callee.exprs[i]);
+        if (!isOpen) return false;
+        whole = callee;
+        whole.name = Name();
+        for (Expr& e : whole.exprs) {
+            if (e.op != Op::Call) continue;
+            const Function& inner = *module.find(Name(e.payload));
+            if (depth >= limits.depth || copied + inner.exprs.size() > limits.expressions || !ok) return false;
+            if (frames.size() <= depth) frames.emplace_back();
+            Frame& frame = frames[depth];
+            frame.key.assign(1, inner.name.index);
+            for (const Param& p : inner.params) addArgument(frame.key, {Shape::Any, p.type, {}});
+            depth++;
+            const Function& clone = this->clone(inner, frame).function;
+            depth--;
+            if (isSmall(clone)) return false;
+            copied += inner.exprs.size();
+            e.payload = clone.name.index;
+        }
+        return true;
+    }
+
+    bool staysAsItIs(const Function& f, const Expr& e) const {
+        if (e.op == Op::Known || (e.op == Op::Uniform && !baked.empty())) return false;
+        if (e.op != Op::Call) return true;
+        const Function* inner = cloneOf(Name(e.payload)) ? nullptr : module.find(Name(e.payload));
+        return inner && inner->isApart && std::all_of(f.operandsOf(e).begin(), f.operandsOf(e).end(), [&](ExprId o) {
+                   return argumentOf(f, o).shape == Shape::Any;
+               });
+    }
+
     void make(const Function& callee, const Key& key, Frame& frame, Function& clone) {
+        clone = {};  // what was begun as a whole
         eachArgument(key, [&](std::uint32_t i, const Argument& a) {
             if (a.shape == Shape::Constant) return;
             clone.params.push_back(

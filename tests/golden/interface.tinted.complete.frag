@@ -2,8 +2,8 @@
 
 // tinted
 
-uniform vec3 u_viewPosition = vec3(0.0);
-uniform mat4 u_envMatrix = mat4(-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+uniform vec3 u_viewPosition = vec3(0);
+uniform mat4 u_envMatrix = mat4(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
 uniform float u_envLightIntensity = 1.0;
 uniform int u_envRadianceMips = 1;
 uniform int u_envRadianceSamples = 16;
@@ -19,20 +19,20 @@ uniform float tinted_shader_base = 1.0;
 uniform float tinted_shader_diffuse_roughness = 0.0;
 uniform float tinted_shader_metalness = 0.0;
 uniform float tinted_shader_specular = 1.0;
-uniform vec3 tinted_shader_specular_color = vec3(1.0);
+uniform vec3 tinted_shader_specular_color = vec3(1);
 uniform float tinted_shader_specular_IOR = 1.5;
 uniform float tinted_shader_specular_anisotropy = 0.0;
 uniform float tinted_shader_specular_rotation = 0.0;
 uniform float tinted_shader_transmission = 0.0;
-uniform vec3 tinted_shader_transmission_color = vec3(1.0);
+uniform vec3 tinted_shader_transmission_color = vec3(1);
 uniform float tinted_shader_transmission_extra_roughness = 0.0;
 uniform float tinted_shader_subsurface = 0.0;
-uniform vec3 tinted_shader_subsurface_color = vec3(1.0);
+uniform vec3 tinted_shader_subsurface_color = vec3(1);
 uniform float tinted_shader_sheen = 0.0;
-uniform vec3 tinted_shader_sheen_color = vec3(1.0);
+uniform vec3 tinted_shader_sheen_color = vec3(1);
 uniform float tinted_shader_sheen_roughness = 0.3;
 uniform float tinted_shader_coat = 0.0;
-uniform vec3 tinted_shader_coat_color = vec3(1.0);
+uniform vec3 tinted_shader_coat_color = vec3(1);
 uniform float tinted_shader_coat_roughness = 0.1;
 uniform float tinted_shader_coat_anisotropy = 0.0;
 uniform float tinted_shader_coat_rotation = 0.0;
@@ -42,324 +42,292 @@ uniform float tinted_shader_coat_affect_roughness = 0.0;
 uniform float tinted_shader_thin_film_thickness = 0.0;
 uniform float tinted_shader_thin_film_IOR = 1.5;
 uniform float tinted_shader_emission = 0.0;
-uniform vec3 tinted_shader_emission_color = vec3(1.0);
-uniform vec3 tinted_shader_opacity = vec3(1.0);
+uniform vec3 tinted_shader_emission_color = vec3(1);
+uniform vec3 tinted_shader_opacity = vec3(1);
 uniform bool tinted_shader_thin_walled = false;
 
 in VertexData
 {
-    vec3 positionWorld;
-    vec3 normalWorld;
-    vec3 tangentWorld;
+	vec3 positionWorld;
+	vec3 normalWorld;
+	vec3 tangentWorld;
 } vd;
 
 out vec4 out1;
 
-// Reflectance of a conductor of index n + ik for unpolarised light; exact for positive c. Written out, the squares of
-// the amplitudes for p- and s-polarised light have a ratio that needs no further root.
-vec3 fresnel_conductor(float c, vec3 n, vec3 k)
-{
-    float c2 = c * c;
-    float s2 = 1.0 - c2;
-    vec3 t = n * n - k * k - s2;
-    vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
-    vec3 a = 2.0 * c * sqrt(max(0.5 * (t + m), 0.0));
-    vec3 b = c2 + m;
-    vec3 d = c2 * m + s2 * s2;
-    vec3 v = s2 * a;
-    return 0.5 * ((b - a) / (a + b)) * ((d - v) / (d + v) + 1.0);
-}
-
 // Reflectance at an interface of admittance u + iw.
 vec3 fresnel_reflectance(float c, vec3 u, vec3 w)
 {
-    vec3 v = c - u;
-    vec3 v2 = w * w;
-    vec3 v3 = c + u;
-    return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
+	vec3 v = c - u;
+	vec3 v2 = w * w;
+	vec3 v3 = c + u;
+	return (v * v + v2) / max(v2 + v3 * v3, 1e-12);
+}
+
+// Reflectance of a conductor of index n + ik for unpolarised light.
+vec3 fresnel_conductor(float c, vec3 n, vec3 k)
+{
+	float c2 = c * c;
+	float s2 = 1.0 - c2;
+	vec3 t = n * n - k * k - s2;
+	vec3 m = sqrt(t * t + k * (k * (n * (4.0 * n))));
+	vec3 a = 2.0 * c * sqrt(max(0.5 * (t + m), 0.0));
+	vec3 b = c2 + m;
+	vec3 d = c2 * m + s2 * s2;
+	vec3 v = s2 * a;
+	return 0.5 * ((b - a) / (a + b)) * ((d - v) / (d + v) + 1.0);
 }
 
 // Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8).
 vec3 fresnel_thin_film(float c, vec3 n, vec3 k, float thickness, float film_ior)
 {
-    float film = max(film_ior, 1.0);
-    float inside = sqrt(1.0 - (1.0 - c * c) / (film * film));
-    float phase = inside * (thickness * (1.256637e-08 * film));
-    vec3 v = n / film;
-    vec3 v2 = k / film;
-    vec3 re = v * v - v2 * v2;
-    float x = inside * inside;
-    vec3 t = re - (1.0 - x);
-    vec3 m = sqrt(t * t + v2 * (v2 * (v * (4.0 * v))));
-    vec3 u = sqrt(max(0.5 * (t + m), 0.0));
-    vec3 w = sqrt(max(0.5 * (m - t), 0.0));
-    vec3 im = v2 * (2.0 * v);
-    vec3 scale = 1.0 / max(re * re + im * im, 1e-12);
-    vec3 up = scale * (re * u + w * im);
-    vec3 wp = scale * (re * w - u * im);
-    float x2 = film * inside;
-    float x3 = inside / film;
-    float x4 = -2.0 * inside;
-    vec3 u2 = u;
-    vec3 w2 = w;
-    vec3 sum = vec3(0.0);
-    for (int p = 0; p < 2; p++)
-    {
-        float y = p == 0 ? x2 : x3;
-        float r = (c - y) / (c + y);
-        float R12 = r * r;
-        float T = 1.0 - R12;
-        vec3 R23 = fresnel_reflectance(inside, u2, w2);
-        vec3 v3 = atan(w2 * x4, x - u2 * u2 - w2 * w2);
-        vec3 shift = v3 + (0.0 < r ? 3.1415927 : 0.0);
-        vec3 R123 = R12 * R23;
-        vec3 steady = R23 * (T * T) / (1.0 - R123);
-        vec3 R123_2 = sqrt(R123);
-        vec3 sum2 = sum + R12 + steady;
-        vec3 wave = steady - T;
-        for (int i = 0; i < 2; i++)
-        {
-            vec3 wave2 = R123_2 * wave;
-            float x5 = float(i + 1);
-            float x6 = phase * x5;
-            vec3 v4 = shift * x5;
-            vec3 v5 = cos(v4 + vec3(1681000.0, 1795300.0, 2208400.0) * x6);
-            vec3 v6 = exp(x6 * (vec3(-4327800000.0, -9304600000.0, -6612100000.0) * x6));
-            float second = 1.644e-08 * cos(2239900.0 * x6 + v4.x) * exp(x6 * (-4528200000.0 * x6));
-            vec3 v7 = 9358910.0 * (vec3(9.04581e-08, 1.068737e-07, 1.069699e-07) * v5 * v6 + vec3(second, 0.0, 0.0));
-            sum2 += 2.0 * wave2 * v7;
-            wave = wave2;
-        }
-        u2 = up;
-        w2 = wp;
-        sum = sum2;
-    }
-    vec3 v8 = mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum;
-    return clamp(0.5 * v8, 0.0, 1.0);
+	float film = max(film_ior, 1.0);
+	float inside = sqrt(1.0 - (1.0 - c * c) / (film * film));
+	float phase = inside * (thickness * (1.256637e-08 * film));
+	vec3 v = n / film;
+	vec3 v2 = k / film;
+	vec3 re = v * v - v2 * v2;
+	float x = inside * inside;
+	vec3 t = re - (1.0 - x);
+	vec3 m = sqrt(t * t + v2 * (v2 * (v * (4.0 * v))));
+	vec3 u = sqrt(max(0.5 * (t + m), 0.0));
+	vec3 w = sqrt(max(0.5 * (m - t), 0.0));
+	vec3 im = v2 * (2.0 * v);
+	vec3 scale = 1.0 / max(re * re + im * im, 1e-12);
+	vec3 up = scale * (re * u + w * im);
+	vec3 wp = scale * (re * w - u * im);
+	float x2 = film * inside;
+	float x3 = inside / film;
+	float x4 = -2.0 * inside;
+	vec3 u2 = u;
+	vec3 w2 = w;
+	vec3 sum = vec3(0);
+	for (int p = 0; p < 2; p++)
+	{
+		float y = p == 0 ? x2 : x3;
+		float r = (c - y) / (c + y);
+		float R12 = r * r;
+		float T = 1.0 - R12;
+		vec3 R23 = fresnel_reflectance(inside, u2, w2);
+		vec3 shift = atan(w2 * x4, x - u2 * u2 - w2 * w2) + (0.0 < r ? 3.1415927 : 0.0);
+		vec3 R123 = R12 * R23;
+		vec3 steady = R23 * (T * T) / (1.0 - R123);
+		vec3 R123_2 = sqrt(R123);
+		vec3 sum2 = sum + R12 + steady;
+		vec3 wave = steady - T;
+		for (int i = 0; i < 2; i++)
+		{
+			vec3 wave2 = R123_2 * wave;
+			float x5 = float(i + 1);
+			float x6 = phase * x5;
+			vec3 v3 = shift * x5;
+			vec3 v4 = vec3(9.04581e-08, 1.068737e-07, 1.069699e-07) * cos(v3 + vec3(1681000.0, 1795300.0, 2208400.0) * x6);
+			vec3 v5 = vec3(1.644e-08 * cos(2239900.0 * x6 + v3.x) * exp(x6 * (-4528200000.0 * x6)), 0.0, 0.0);
+			vec3 v6 = 2.0 * wave2 * (9358910.0 * (v4 * exp(x6 * (vec3(-4327800000.0, -9304600000.0, -6612100000.0) * x6)) + v5));
+			sum2 += v6;
+			wave = wave2;
+		}
+		u2 = up;
+		w2 = wp;
+		sum = sum2;
+	}
+	return clamp(0.5 * (mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum), 0.0, 1.0);
 }
 
-// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
+// Reads a latitude-longitude map: v = 0 is the zenith, u runs with the azimuth from -z.
 vec3 environment_lookup(sampler2D map, vec3 d, float level)
 {
-    float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
-    return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
+	return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0))), level).xyz;
 }
 
-// E: what white GGX reflects in one bounce to a view at cosine NV. Fitted by tools/fit to E by quadrature.
-float microfacet_white(float NV, float alpha)
-{
-    float scale = NV * alpha / (NV * NV + alpha * alpha * (4.4736 * NV + 0.669338));
-    float x = alpha * (NV * (0.427862 * NV + 1.88316) + 0.0766197 + alpha * (2.18724 - 0.015081 * NV));
-    return clamp(1.0 - scale * (NV * (0.0677313 - 0.519049 * NV) + 0.179275 + x), 0.01, 1.0);
-}
-
-// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+// The environment's light by n visible normals, which mirror it or refract it.
 vec3 microfacet_light(vec2 roughness, bool refracts, bool clear, float ior, vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V, vec3 X, out vec3 albedo)
 {
-    bool isotropic = roughness.x == roughness.y;
-    vec3 tangent = isotropic ? V : X;
-    vec3 tangent2 = tangent - N * dot(N, tangent);
-    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x = normalize(dot(tangent2, tangent2) < 1e-08 ? cross(N, other) : tangent2);
-    vec3 y = cross(N, x);
-    float NV = clamp(dot(N, V), 0.0001, 1.0);
-    float x2 = clamp(roughness.x, 0.0001, 1.0);
-    float x3 = clamp(roughness.y, 0.0001, 1.0);
-    vec3 alpha = vec3(x2, x3, 1.0);
-    vec3 v = vec3(dot(V, x), dot(V, y), NV);
-    vec3 wide = alpha * v;
-    float stretched = length(wide);
-    vec3 s = wide / stretched;
-    float mean = sqrt(x2 * x3);
-    float x4 = mean * mean;
-    float toView = sqrt(mix(NV * NV, 1.0, x4));
-    float count = float(u_envRadianceSamples);
-    float descent = (s.z + 1.0) / count;
-    float reach = NV + stretched;
-    float x5 = 0.5 * log2(count / (reach * (x3 * (6.2831855 * x2))));
-    float level = float(u_envRadianceMips) - 2.5 - x5;
-    mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
-    vec3 away = refracts ? v : -v;
-    float x6 = 1.0 / ior;
-    float n2 = max(ior * ior, 0.0001);
-    float x7 = n2 - 1.0;
-    vec2 azimuth = vec2(1.0, 0.0);
-    float total = 1e-08;
-    vec3 light = vec3(0.0);
-    vec3 share = vec3(0.0);
-    for (int i = 0; i < u_envRadianceSamples; i++)
-    {
-        float z = 1.0 - descent * (float(i) + 0.5);
-        vec3 h = s + vec3(azimuth * sqrt(1.0 - z * z), z);
-        vec3 slope = alpha * h;
-        vec3 H = normalize(slope);
-        vec3 L = reflect(away, refracts ? refract(-v, H, x6) : H);
-        float NL = max(L.z, 0.0);
-        float weight = refracts ? 1.0 : NL / (toView * NL + NV * sqrt(mix(NL * NL, 1.0, x4)));
-        float x8 = dot(v, H);
-        float t = max(1.0 - x8, 0.0);
-        float t2 = t * t;
-        float t4 = t2 * t2;
-        float u = sqrt(max(x7 + x8 * x8, 0.0));
-        float p = u / n2;
-        float rs = (x8 - u) / (x8 + u);
-        float rp = (x8 - p) / (x8 + p);
-        vec3 v2 = base + rise * (clear ? 0.5 * (rs * rs + rp * rp) : t * t4);
-        vec3 F = weight * clamp(v2 + (bend + dip * t4) * (x8 * t2), 0.0, 1.0);
-        vec3 d = frame * L;
-        float x9 = dot(slope, slope) / dot(h, h);
-        float r2 = x9 * x9;
-        float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
-        float whole = floor(best);
-        float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
-        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
-        total += weight;
-        light += F * environment_lookup(u_envRadiance, d, level2);
-        share += F;
-    }
-    float E = min(reach * total / count, 1.0);
-    vec3 once = share / total;
-    float white = isotropic ? E : microfacet_white(NV, mean);
-    vec3 v3 = mix(once, vec3(1.0), white) * (isotropic ? 1.0 : min(E / white, 1.0));
-    vec3 bounces = refracts ? vec3(1.0) : v3;
-    albedo = once * bounces;
-    return light * (bounces / total);
+	bool isotropic = roughness.x == roughness.y;
+	vec3 tangent = isotropic ? V : X;
+	vec3 tangent2 = tangent - N * dot(N, tangent);
+	vec3 v = cross(N, abs(N.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0));
+	vec3 x = normalize(dot(tangent2, tangent2) < 1e-08 ? v : tangent2);
+	vec3 y = cross(N, x);
+	float NV = clamp(dot(N, V), 0.0001, 1.0);
+	vec2 p = clamp(roughness, 0.0001, 1.0);
+	vec3 alpha = vec3(p, 1.0);
+	float x2 = NV * NV;
+	vec3 v2 = vec3(dot(V, x), dot(V, y), NV);
+	vec3 wide = alpha * v2;
+	float stretched = length(wide);
+	vec3 s = wide / stretched;
+	float mean = sqrt(p.x * p.y);
+	float x3 = mean * mean;
+	float toView = sqrt(mix(x2, 1.0, x3));
+	float count = float(u_envRadianceSamples);
+	float descent = (s.z + 1.0) / count;
+	float reach = NV + stretched;
+	float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (reach * (p.y * (6.2831855 * p.x))));
+	mat3 frame = mat3(u_envMatrix) * mat3(x, y, N);
+	vec3 away = refracts ? v2 : -v2;
+	float x4 = 1.0 / ior;
+	float n2 = max(ior * ior, 0.0001);
+	float x5 = n2 - 1.0;
+	vec2 azimuth = vec2(1, 0);
+	float total = 1e-08;
+	vec3 light = vec3(0);
+	vec3 share = vec3(0);
+	for (int i = 0; i < u_envRadianceSamples; i++)
+	{
+		float z = 1.0 - descent * (float(i) + 0.5);
+		vec3 h = s + vec3(azimuth * sqrt(1.0 - z * z), z);
+		vec3 slope = alpha * h;
+		vec3 H = normalize(slope);
+		vec3 L = reflect(away, refracts ? refract(-v2, H, x4) : H);
+		float NL = max(L.z, 0.0);
+		float x6 = NL / (toView * NL + NV * sqrt(mix(NL * NL, 1.0, x3)));
+		float weight = refracts ? 1.0 : x6;
+		float x7 = dot(v2, H);
+		float t = max(1.0 - x7, 0.0);
+		float t2 = t * t;
+		float t4 = t2 * t2;
+		float u = sqrt(max(x5 + x7 * x7, 0.0));
+		float p2 = u / n2;
+		float rs = (x7 - u) / (x7 + u);
+		float rp = (x7 - p2) / (x7 + p2);
+		float x8 = 0.5 * (rs * rs + rp * rp);
+		vec3 F = weight * clamp(base + rise * (clear ? x8 : t * t4) + (bend + dip * t4) * (x7 * t2), 0.0, 1.0);
+		vec3 d = frame * L;
+		float x9 = dot(slope, slope) / dot(h, h);
+		float r2 = x9 * x9;
+		float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+		float whole = floor(best);
+		vec3 v3 = F * environment_lookup(u_envRadiance, d, whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0));
+		azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
+		total += weight;
+		light += v3;
+		share += F;
+	}
+	float E = min(reach * total / count, 1.0);
+	vec3 once = share / total;
+	float lost = 0.218505 - 0.207071 * NV + mean * (1.3982 * NV + 2.44659 * mean);
+	float x10 = clamp(1.0 - NV * mean / (x2 + x3 * (3.68834 * NV + 0.792037)) * lost, 0.01, 1.0);
+	float white = refracts || isotropic ? E : x10;
+	vec3 kept = mix(once, vec3(1), white) * min(E / white, 1.0);
+	albedo = once * kept;
+	return light * (kept / total);
 }
 
 void main()
 {
-    vec3 blend = mix(tint_dark, tint_bright, tint_amount);
-    float half2 = tint_amount * half_in2;
-    vec3 normal = normalize(vd.normalWorld);
-    vec3 v = normalize(vd.tangentWorld);
-    vec3 metal_edge_color = tinted_shader_specular * tinted_shader_specular_color;
-    vec3 r = clamp(blend * tinted_shader_base, 0.0, 0.99);
-    vec3 root = sqrt(r);
-    vec3 v2 = 1.0 - r;
-    vec3 metal_index_ior = mix((root + 1.0) / (1.0 - root), v2 / (r + 1.0), metal_edge_color);
-    vec3 above = metal_index_ior + 1.0;
-    vec3 below = metal_index_ior - 1.0;
-    vec3 metal_index_extinction = sqrt(max((r * (above * above) - below * below) / v2, 0.0));
-    float coat_blur = tinted_shader_coat_roughness * (tinted_shader_coat * tinted_shader_coat_affect_roughness);
-    float specular_blurred = mix(half2, 1.0, coat_blur);
-    float transmission_blurred = mix(clamp(half2 + tinted_shader_transmission_extra_roughness, 0.0, 1.0), 1.0, coat_blur);
-    float coat_gamma = tinted_shader_coat_affect_color * clamp(tinted_shader_coat, 0.0, 1.0) + 1.0;
-    vec3 subsurface_deepened = pow(max(tinted_shader_subsurface_color, 0.0), vec3(coat_gamma));
-    float thin_walled_weight = tinted_shader_thin_walled ? 1.0 : 0.0;
-    vec3 coat_tint = mix(vec3(1.0), tinted_shader_coat_color, tinted_shader_coat);
-    float coat_amplitude = (tinted_shader_coat_IOR - 1.0) / (tinted_shader_coat_IOR + 1.0);
-    float coat_transmittance = 1.0 - coat_amplitude * coat_amplitude;
-    vec3 V = normalize(u_viewPosition - vd.positionWorld);
-    float x = 1.0 - tinted_shader_metalness;
-    vec3 N = faceforward(normal, -V, normal);
-    float NV = clamp(dot(V, N), 0.0001, 1.0);
-    bool metal_is_used = tinted_shader_metalness != 0.0;
-    vec3 base = fresnel_reflectance(1.0, metal_index_ior, metal_index_extinction);
-    vec3 rise = 1.0 - base;
-    vec3 v3 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction) - base;
-    vec3 more60 = v3 - 0.03125 * rise;
-    vec3 v4 = fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction) - base;
-    vec3 more82 = v4 - 0.46266437 * rise;
-    bool test = 0.0 < tinted_shader_thin_film_thickness;
-    vec3 dip = test ? vec3(0.0) : 19.962864 * more82 - 16.761822 * more60;
-    vec3 bend = test ? vec3(0.0) : 9.047614 * more60 - 1.247679 * more82;
-    vec3 rise2 = test ? vec3(0.0) : rise;
-    bool specular_lobe_is_used = tinted_shader_specular * x != 0.0;
-    vec3 v5 = vec3(tinted_shader_specular_IOR);
-    bool test2 = test && specular_lobe_is_used;
-    int calls = int(test2) + int(metal_is_used && test);
-    int which = test2 ? 0 : 1;
-    vec3 base2 = vec3(0.0);
-    vec3 base3 = vec3(0.0);
-    for (int i = 0; i < calls; i++)
-    {
-        bool is_metal = which == 1;
-        vec3 n = is_metal ? metal_index_ior : v5;
-        vec3 k = is_metal ? metal_index_extinction : vec3(0.0);
-        vec3 v6 = fresnel_thin_film(NV, n, k, tinted_shader_thin_film_thickness, tinted_shader_thin_film_IOR);
-        base2 = which == 0 ? v6 : base2;
-        which = 1;
-        base3 = is_metal ? v6 : base3;
-    }
-    vec3 base4 = test ? base3 : base;
-    bool transmitted_is_used = tinted_shader_transmission * x != 0.0;
-    vec3 rise3 = test ? vec3(0.0) : vec3(1.0);
-    bool coat_lobe_is_used = tinted_shader_coat != 0.0;
-    int k2 = int(coat_lobe_is_used) + int(specular_lobe_is_used) + int(transmitted_is_used);
-    int calls2 = k2 + int(metal_is_used);
-    int k3 = specular_lobe_is_used ? 1 : transmitted_is_used ? 2 : 3;
-    vec3 v7 = cross(v, normal);
-    float x2 = dot(normal, v);
-    int which2 = coat_lobe_is_used ? 0 : k3;
-    vec3 coat_lobe = vec3(0.0);
-    vec3 coat_lobe_albedo = vec3(0.0);
-    vec3 radiance = vec3(0.0);
-    vec3 specular_lobe_albedo = vec3(0.0);
-    vec3 radiance2 = vec3(0.0);
-    vec3 metal = vec3(0.0);
-    for (int i2 = 0; i2 < calls2; i2++)
-    {
-        bool clear = which2 < 2;
-        int k4 = transmitted_is_used && clear ? 2 : 3;
-        bool is_transmitted = which2 == 2;
-        float x3 = is_transmitted ? transmission_blurred : specular_blurred;
-        bool is_coat_lobe = which2 == 0;
-        float x4 = is_coat_lobe ? tinted_shader_coat_roughness : x3;
-        float x5 = is_coat_lobe ? tinted_shader_coat_anisotropy : tinted_shader_specular_anisotropy;
-        float alpha = x4 * x4;
-        float aspect = sqrt(1.0 - clamp(x5, 0.0, 0.98));
-        bool test3 = 0.0 < x5;
-        vec2 roughness = test3 ? vec2(min(alpha / aspect, 1.0), alpha * aspect) : vec2(alpha);
-        bool is_metal2 = which2 == 3;
-        float ior = is_coat_lobe ? tinted_shader_coat_IOR : is_metal2 ? 1.0 : tinted_shader_specular_IOR;
-        vec3 v8 = is_metal2 ? base4 : vec3(0.0);
-        bool is_specular_lobe = which2 == 1;
-        vec3 base5 = is_specular_lobe ? base2 : is_transmitted ? vec3(1.0) : v8;
-        vec3 v9 = is_metal2 ? rise2 : vec3(1.0);
-        vec3 rise4 = is_specular_lobe ? rise3 : is_transmitted ? vec3(0.0) : v9;
-        vec3 bend2 = is_metal2 ? bend : vec3(0.0);
-        vec3 dip2 = is_metal2 ? dip : vec3(0.0);
-        float angle = radians(360.0 * (is_coat_lobe ? tinted_shader_coat_rotation : tinted_shader_specular_rotation));
-        float cosine = cos(angle);
-        vec3 v10 = normalize(v * cosine + v7 * sin(angle) + normal * (x2 * (1.0 - cosine)));
-        vec3 X = test3 ? v10 : v;
-        vec3 albedo;
-        vec3 radiance3 = microfacet_light(roughness, is_transmitted, clear, ior, base5, rise4, bend2, dip2, N, V, X, albedo);
-        which2 = specular_lobe_is_used && which2 < 1 ? 1 : k4;
-        coat_lobe = is_coat_lobe ? radiance3 : coat_lobe;
-        coat_lobe_albedo = is_coat_lobe ? albedo : coat_lobe_albedo;
-        radiance = is_specular_lobe ? radiance3 : radiance;
-        specular_lobe_albedo = is_specular_lobe ? albedo : specular_lobe_albedo;
-        radiance2 = is_transmitted ? radiance3 : radiance2;
-        metal = is_metal2 ? radiance3 : metal;
-    }
-    vec3 v11 = coat_tint * (1.0 - tinted_shader_coat * coat_lobe_albedo);
-    vec3 v12 = x * v11;
-    vec3 passed = v12 * (1.0 - tinted_shader_specular * specular_lobe_albedo);
-    vec3 v13 = (1.0 - tinted_shader_transmission) * passed;
-    float r2 = clamp(tinted_shader_sheen_roughness, 0.01, 1.0);
-    float x6 = NV * (1.91259 * NV - 6.35138) + 3.35395 + r2 * (13.7158 - 4.94826 * NV - 0.698754 * r2);
-    float share = clamp(x6 / (13.4539 * NV + 1.0 + r2 * (11.4431 * NV + 26.6426)), 0.0, 1.0);
-    mat3 m = mat3(u_envMatrix);
-    vec3 v14 = environment_lookup(u_envIrradiance, m * N, 0.0);
-    vec3 passed2 = v13 * (1.0 - tinted_shader_sheen * share);
-    vec3 v15 = tinted_shader_subsurface * passed2;
-    float s2 = tinted_shader_diffuse_roughness * tinted_shader_diffuse_roughness;
-    float t = 1.0 - NV;
-    float rough = sqrt(max(1.0 - NV * NV, 0.0)) * (t * (0.0396229 * t + 0.252719) + 0.208327);
-    float white = min(1.0 - 0.5 * s2 / (s2 + 0.33) + 0.45 * s2 / (s2 + 0.09) * rough, 1.0);
-    vec3 diffuse = v14 * (pow(max(blend, 0.0), vec3(coat_gamma)) * white);
-    vec3 v16 = environment_lookup(u_envIrradiance, m * -normal, 0.0);
-    vec3 transmitted = radiance2 * (u_refractionTwoSided ? tinted_shader_transmission_color * tinted_shader_transmission_color : tinted_shader_transmission_color);
-    vec3 v17 = tinted_shader_base * ((1.0 - tinted_shader_subsurface) * passed2) * diffuse;
-    vec3 v18 = v17 + (1.0 - thin_walled_weight) * v15 * (subsurface_deepened * v14);
-    vec3 v19 = v18 + thin_walled_weight * v15 * (subsurface_deepened * v16);
-    vec3 v20 = v19 + tinted_shader_sheen_color * share * v14 * (tinted_shader_sheen * v13);
-    vec3 v21 = v20 + tinted_shader_transmission * passed * transmitted;
-    vec3 v22 = v21 + tinted_shader_specular_color * radiance * (tinted_shader_specular * v12);
-    vec3 v23 = v22 + metal * (tinted_shader_metalness * v11);
-    float x7 = tinted_shader_coat * (coat_transmittance * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0)));
-    vec3 v24 = tinted_shader_emission * tinted_shader_emission_color * (1.0 - tinted_shader_coat + tinted_shader_coat_color * x7);
-    vec3 v25 = (v23 + tinted_shader_coat * coat_lobe) * u_envLightIntensity + v24;
-    out1 = vec4(dot(tinted_shader_opacity, vec3(0.2722287, 0.6740818, 0.0536895)) * v25, 1.0);
+	vec3 blend = mix(tint_dark, tint_bright, tint_amount);
+	float half2 = tint_amount * half_in2;
+	vec3 normal = normalize(vd.normalWorld);
+	vec3 v = normalize(vd.tangentWorld);
+	vec3 r = clamp(blend * tinted_shader_base, 0.0, 0.99);
+	vec3 root = sqrt(r);
+	vec3 v2 = 1.0 - r;
+	vec3 metal_index_ior = mix((root + 1.0) / (1.0 - root), v2 / (r + 1.0), tinted_shader_specular * tinted_shader_specular_color);
+	vec3 above = metal_index_ior + 1.0;
+	vec3 below = metal_index_ior - 1.0;
+	vec3 metal_index_extinction = sqrt(max((r * (above * above) - below * below) / v2, 0.0));
+	float coat_blur = tinted_shader_coat_roughness * (tinted_shader_coat * tinted_shader_coat_affect_roughness);
+	float specular_blurred = mix(half2, 1.0, coat_blur);
+	float transmission_blurred = mix(clamp(half2 + tinted_shader_transmission_extra_roughness, 0.0, 1.0), 1.0, coat_blur);
+	float coat_gamma = tinted_shader_coat_affect_color * clamp(tinted_shader_coat, 0.0, 1.0) + 1.0;
+	vec3 subsurface_deepened = pow(max(tinted_shader_subsurface_color, 0.0), vec3(coat_gamma));
+	float thin_walled_weight = tinted_shader_thin_walled ? 1.0 : 0.0;
+	float coat_amplitude = (tinted_shader_coat_IOR - 1.0) / (tinted_shader_coat_IOR + 1.0);
+	vec3 V = normalize(u_viewPosition - vd.positionWorld);
+	float x = 1.0 - tinted_shader_metalness;
+	vec3 N = faceforward(normal, -V, normal);
+	float NV = clamp(dot(V, N), 0.0001, 1.0);
+	vec3 base = fresnel_reflectance(1.0, metal_index_ior, metal_index_extinction);
+	bool test = 0.0 < tinted_shader_thin_film_thickness;
+	bool has_specular = tinted_shader_specular * x != 0.0;
+	vec3 rise = 1.0 - base;
+	vec3 more60 = fresnel_conductor(0.5, metal_index_ior, metal_index_extinction) - base - 0.03125 * rise;
+	vec3 more82 = fresnel_conductor(0.14285715, metal_index_ior, metal_index_extinction) - base - 0.46266437 * rise;
+	vec3 bend = 9.047614 * more60 - 1.247679 * more82;
+	vec3 dip = 19.962864 * more82 - 16.761822 * more60;
+	vec3 dip2 = test ? vec3(0) : dip;
+	vec3 bend2 = test ? vec3(0) : bend;
+	vec3 rise2 = test ? vec3(0) : rise;
+	bool has_transmitted = tinted_shader_transmission * x != 0.0;
+	vec3 rise3 = test ? vec3(0) : vec3(1);
+	bool has_coat = tinted_shader_coat != 0.0;
+	int calls = int(has_coat) + int(has_specular) + int(has_transmitted) + int(tinted_shader_metalness != 0.0);
+	vec3 v3 = cross(v, normal);
+	float x2 = dot(normal, v);
+	int last = -1;
+	vec3 coat = vec3(0);
+	vec3 coat_albedo = vec3(0);
+	vec3 radiance = vec3(0);
+	vec3 specular_albedo = vec3(0);
+	vec3 radiance2 = vec3(0);
+	vec3 metal = vec3(0);
+	for (int i = 0; i < calls; i++)
+	{
+		int k = has_specular && last < 1 ? 1 : has_transmitted && last < 2 ? 2 : 3;
+		int which = has_coat && last < 0 ? 0 : k;
+		bool is_specular = which == 1;
+		bool is_metal = which == 3;
+		int k2 = int(test && (is_specular || is_metal));
+		vec3 film = vec3(0);
+		for (int i2 = 0; i2 < k2; i2++)
+		{
+			vec3 n = is_metal ? metal_index_ior : vec3(tinted_shader_specular_IOR);
+			vec3 k3 = is_metal ? metal_index_extinction : vec3(0);
+			film = fresnel_thin_film(NV, n, k3, tinted_shader_thin_film_thickness, tinted_shader_thin_film_IOR);
+		}
+		bool is_transmitted = which == 2;
+		bool is_coat = which == 0;
+		float x3 = is_coat ? tinted_shader_coat_roughness : is_transmitted ? transmission_blurred : specular_blurred;
+		float x4 = is_coat ? tinted_shader_coat_anisotropy : tinted_shader_specular_anisotropy;
+		float alpha = x3 * x3;
+		float aspect = sqrt(1.0 - clamp(x4, 0.0, 0.98));
+		bool test2 = 0.0 < x4;
+		vec2 p = vec2(min(alpha / aspect, 1.0), alpha * aspect);
+		vec2 roughness = test2 ? p : vec2(alpha);
+		float ior = is_coat ? tinted_shader_coat_IOR : is_metal ? 1.0 : tinted_shader_specular_IOR;
+		vec3 v4 = is_transmitted ? vec3(1) : is_metal ? (test ? film : base) : vec3(0);
+		vec3 base2 = is_specular ? film : v4;
+		vec3 rise4 = is_specular ? rise3 : is_transmitted ? vec3(0) : is_metal ? rise2 : vec3(1);
+		vec3 bend3 = is_metal ? bend2 : vec3(0);
+		vec3 dip3 = is_metal ? dip2 : vec3(0);
+		float angle = radians(360.0 * (is_coat ? tinted_shader_coat_rotation : tinted_shader_specular_rotation));
+		float cosine = cos(angle);
+		vec3 v5 = normalize(v * cosine + v3 * sin(angle) + normal * (x2 * (1.0 - cosine)));
+		vec3 X = test2 ? v5 : v;
+		vec3 albedo;
+		vec3 radiance3 = microfacet_light(roughness, is_transmitted, which < 2, ior, base2, rise4, bend3, dip3, N, V, X, albedo);
+		last = which;
+		if (is_coat) coat = radiance3;
+		if (is_coat) coat_albedo = albedo;
+		if (is_specular) radiance = radiance3;
+		if (is_specular) specular_albedo = albedo;
+		if (is_transmitted) radiance2 = radiance3;
+		if (is_metal) metal = radiance3;
+	}
+	vec3 v6 = mix(vec3(1), tinted_shader_coat_color, tinted_shader_coat) * (1.0 - tinted_shader_coat * coat_albedo);
+	vec3 v7 = x * v6;
+	vec3 passed = v7 * (1.0 - tinted_shader_specular * specular_albedo);
+	vec3 v8 = (1.0 - tinted_shader_transmission) * passed;
+	float r2 = clamp(tinted_shader_sheen_roughness, 0.01, 1.0);
+	float x5 = NV * (1.91259 * NV - 6.35138) + 3.35395 + r2 * (13.7158 - 4.94826 * NV - 0.698754 * r2);
+	float share = clamp(x5 / (13.4539 * NV + 1.0 + r2 * (11.4431 * NV + 26.6426)), 0.0, 1.0);
+	vec3 v9 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+	vec3 passed2 = v8 * (1.0 - tinted_shader_sheen * share);
+	vec3 v10 = tinted_shader_subsurface * passed2;
+	float s2 = tinted_shader_diffuse_roughness * tinted_shader_diffuse_roughness;
+	float t = 1.0 - NV;
+	float x6 = 0.45 * s2 / (s2 + 0.09) * (sqrt(max(1.0 - NV * NV, 0.0)) * (t * (0.0396229 * t + 0.252719) + 0.208327));
+	vec3 diffuse = v9 * (pow(max(blend, 0.0), vec3(coat_gamma)) * min(1.0 - 0.5 * s2 / (s2 + 0.33) + x6, 1.0));
+	vec3 translucent = subsurface_deepened * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * -normal, 0.0);
+	vec3 v11 = tinted_shader_base * ((1.0 - tinted_shader_subsurface) * passed2) * diffuse;
+	vec3 v12 = v11 + (1.0 - thin_walled_weight) * v10 * (subsurface_deepened * v9);
+	vec3 v13 = tinted_shader_sheen_color * share * v9 * (tinted_shader_sheen * v8);
+	vec3 v14 = tinted_shader_transmission * passed * (radiance2 * (u_refractionTwoSided ? tinted_shader_transmission_color * tinted_shader_transmission_color : tinted_shader_transmission_color));
+	vec3 v15 = v12 + thin_walled_weight * v10 * translucent + v13 + v14;
+	vec3 v16 = v15 + tinted_shader_specular_color * radiance * (tinted_shader_specular * v7);
+	vec3 v17 = (v16 + metal * (tinted_shader_metalness * v6) + tinted_shader_coat * coat) * u_envLightIntensity;
+	float x7 = tinted_shader_coat * ((1.0 - coat_amplitude * coat_amplitude) * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0)));
+	vec3 v18 = v17 + tinted_shader_emission * tinted_shader_emission_color * (1.0 - tinted_shader_coat + tinted_shader_coat_color * x7);
+	out1 = vec4(dot(tinted_shader_opacity, vec3(0.2722287, 0.6740818, 0.0536895)) * v18, 1.0);
 }

@@ -2,8 +2,8 @@
 
 // leaf
 
-uniform vec3 u_viewPosition = vec3(0.0);
-uniform mat4 u_envMatrix = mat4(-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+uniform vec3 u_viewPosition = vec3(0);
+uniform mat4 u_envMatrix = mat4(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
 uniform float u_envLightIntensity = 1.0;
 uniform int u_envRadianceMips = 1;
 uniform int u_envRadianceSamples = 16;
@@ -17,84 +17,81 @@ uniform vec3 leaf_shader_subsurface_color = vec3(0.35, 0.6, 0.1);
 
 in VertexData
 {
-    vec3 positionWorld;
-    vec3 normalWorld;
+	vec3 positionWorld;
+	vec3 normalWorld;
 } vd;
 
 out vec4 out1;
 
-// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
+// Reads a latitude-longitude map: v = 0 is the zenith, u runs with the azimuth from -z.
 vec3 environment_lookup(sampler2D map, vec3 d, float level)
 {
-    float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
-    return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
+	return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0))), level).xyz;
 }
 
-// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+// The environment's light by n visible normals, which mirror it or refract it.
 vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
 {
-    float x = dot(N, V);
-    vec3 tangent = V - N * x;
-    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
-    float NV = clamp(x, 0.0001, 1.0);
-    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
-    vec3 wide = vec3(0.040000003, 0.040000003, 1.0) * v;
-    float stretched = length(wide);
-    vec3 s = wide / stretched;
-    float count = float(u_envRadianceSamples);
-    float descent = (s.z + 1.0) / count;
-    float reach = NV + stretched;
-    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (0.010053097 * reach));
-    mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
-    vec2 azimuth = vec2(1.0, 0.0);
-    float total = 1e-08;
-    vec3 light = vec3(0.0);
-    vec3 share = vec3(0.0);
-    for (int i = 0; i < u_envRadianceSamples; i++)
-    {
-        float z = 1.0 - descent * (float(i) + 0.5);
-        vec3 h = s + vec3(azimuth * sqrt(1.0 - z * z), z);
-        vec3 slope = vec3(0.040000003, 0.040000003, 1.0) * h;
-        vec3 H = normalize(slope);
-        vec3 L = reflect(-v, H);
-        float NL = max(L.z, 0.0);
-        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0016000002)));
-        float x3 = dot(v, H);
-        float u = sqrt(max(x3 * x3 + 1.25, 0.0));
-        float p = u / 2.25;
-        float rs = (x3 - u) / (x3 + u);
-        float rp = (x3 - p) / (x3 + p);
-        float F = weight * (0.5 * (rs * rs + rp * rp));
-        vec3 d = frame * L;
-        float x4 = dot(slope, slope) / dot(h, h);
-        float r2 = x4 * x4;
-        float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
-        float whole = floor(best);
-        float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
-        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
-        total += weight;
-        light += F * environment_lookup(u_envRadiance, d, level2);
-        share += F;
-    }
-    vec3 once = share / total;
-    vec3 bounces = mix(once, vec3(1.0), min(reach * total / count, 1.0));
-    albedo = once * bounces;
-    return light * (bounces / total);
+	float x = dot(N, V);
+	vec3 tangent = V - N * x;
+	vec3 v = cross(N, abs(N.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0));
+	vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? v : tangent);
+	float NV = clamp(x, 0.0001, 1.0);
+	vec3 v2 = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+	vec3 wide = vec3(0.040000003, 0.040000003, 1.0) * v2;
+	float stretched = length(wide);
+	vec3 s = wide / stretched;
+	float count = float(u_envRadianceSamples);
+	float descent = (s.z + 1.0) / count;
+	float reach = NV + stretched;
+	float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (0.010053097 * reach));
+	mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
+	vec2 azimuth = vec2(1, 0);
+	float total = 1e-08;
+	vec3 light = vec3(0);
+	vec3 share = vec3(0);
+	for (int i = 0; i < u_envRadianceSamples; i++)
+	{
+		float z = 1.0 - descent * (float(i) + 0.5);
+		vec3 h = s + vec3(azimuth * sqrt(1.0 - z * z), z);
+		vec3 slope = vec3(0.040000003, 0.040000003, 1.0) * h;
+		vec3 H = normalize(slope);
+		vec3 L = reflect(-v2, H);
+		float NL = max(L.z, 0.0);
+		float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 0.0016000002)));
+		float x3 = dot(v2, H);
+		float u = sqrt(max(x3 * x3 + 1.25, 0.0));
+		float p = u / 2.25;
+		float rs = (x3 - u) / (x3 + u);
+		float rp = (x3 - p) / (x3 + p);
+		float F = weight * (0.5 * (rs * rs + rp * rp));
+		vec3 d = frame * L;
+		float x4 = dot(slope, slope) / dot(h, h);
+		float r2 = x4 * x4;
+		float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+		float whole = floor(best);
+		vec3 v3 = F * environment_lookup(u_envRadiance, d, whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0));
+		azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
+		total += weight;
+		light += v3;
+		share += F;
+	}
+	vec3 once = share / total;
+	vec3 kept = mix(once, vec3(1), min(reach * total / count, 1.0));
+	albedo = once * kept;
+	return light * (kept / total);
 }
 
 void main()
 {
-    vec3 normal = normalize(vd.normalWorld);
-    vec3 V = normalize(u_viewPosition - vd.positionWorld);
-    vec3 N = faceforward(normal, -V, normal);
-    vec3 specular_lobe_albedo;
-    vec3 specular_lobe = microfacet_light(N, V, specular_lobe_albedo);
-    vec3 passed = 1.0 - specular_lobe_albedo;
-    mat3 m = mat3(u_envMatrix);
-    vec3 diffuse = max(leaf_shader_base_color, 0.0) * environment_lookup(u_envIrradiance, m * N, 0.0);
-    vec3 v = environment_lookup(u_envIrradiance, m * -normal, 0.0);
-    vec3 v2 = leaf_shader_base * (passed * (1.0 - leaf_shader_subsurface)) * diffuse;
-    vec3 light = specular_lobe + v2 + leaf_shader_subsurface * passed * (max(leaf_shader_subsurface_color, 0.0) * v);
-    out1 = vec4(light * u_envLightIntensity, 1.0);
+	vec3 normal = normalize(vd.normalWorld);
+	vec3 V = normalize(u_viewPosition - vd.positionWorld);
+	vec3 N = faceforward(normal, -V, normal);
+	vec3 specular_albedo;
+	vec3 specular = microfacet_light(N, V, specular_albedo);
+	vec3 passed = 1.0 - specular_albedo;
+	vec3 diffuse = max(leaf_shader_base_color, 0.0) * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+	vec3 translucent = max(leaf_shader_subsurface_color, 0.0) * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * -normal, 0.0);
+	vec3 v = leaf_shader_base * (passed * (1.0 - leaf_shader_subsurface)) * diffuse;
+	out1 = vec4((specular + v + leaf_shader_subsurface * passed * translucent) * u_envLightIntensity, 1.0);
 }

@@ -6,5 +6,5 @@ out vec4 a_boolean;
 
 void main()
 {
-    a_boolean = vec4(1.0);
+	a_boolean = vec4(1);
 }

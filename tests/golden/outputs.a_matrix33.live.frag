@@ -6,5 +6,5 @@ out vec4 a_matrix33;
 
 void main()
 {
-    a_matrix33 = vec4(0.0, 0.0, 0.0, 1.0);
+	a_matrix33 = vec4(0, 0, 0, 1);
 }

@@ -1,11 +1,11 @@
 #version 400
 
-uniform mat4 u_worldMatrix = mat4(1.0);
-uniform mat4 u_viewProjectionMatrix = mat4(1.0);
+uniform mat4 u_worldMatrix = mat4(1);
+uniform mat4 u_viewProjectionMatrix = mat4(1);
 
 in vec3 i_position;
 
 void main()
 {
-    gl_Position = u_viewProjectionMatrix * (u_worldMatrix * vec4(i_position, 1.0));
+	gl_Position = u_viewProjectionMatrix * (u_worldMatrix * vec4(i_position, 1.0));
 }

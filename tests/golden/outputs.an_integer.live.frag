@@ -4,13 +4,13 @@
 
 in VertexData
 {
-    vec2 texcoord_0;
+	vec2 texcoord_0;
 } vd;
 
 out vec4 an_integer;
 
 void main()
 {
-    float x = float(int(floor(vd.texcoord_0.x)));
-    an_integer = vec4(x, x, x, 1.0);
+	float x = float(int(floor(vd.texcoord_0.x)));
+	an_integer = vec4(x, x, x, 1.0);
 }

@@ -384,7 +384,7 @@ int main(int argc, char** argv) {
     // The lobe's own scale is n / a: its dip moves towards the horizon as the surface gets smooth.
     fit("1 - E, times n a: microfacet_white", white,
         {[](double n, double a) { return n * a; },
-         [](double n, double a) { return std::vector<double>{1, n, n * n, a, n * a, n * n * a, a * a, n * a * a}; },
+         [](double n, double a) { return std::vector<double>{1, n, n * a, a * a}; },
          [](double n, double a) { return std::vector<double>{n * n, a * a, n * a * a}; }});
     fit("cosine of mean reflectance - n, times a: microfacet_cosine (error as reflectance)", edge,
         {[](double, double a) { return a; }, [](double n, double a) { return std::vector<double>{a, n, n * n, n * a}; },

@@ -65,7 +65,7 @@ void FunctionPrinter::entryResults() {
         std::string name = stage_.output;
         if (stage_.isPixel && k == 1) {  // see passes/shade.h
             stage_.out.line(fmt::format("if ({})", textOf(f_.results[k].value)));
-            stage_.out.line("    discard;");
+            stage_.out.line("\tdiscard;");
             continue;
         }
         if (!stage_.isPixel) name = k == 0 ? "gl_Position" : "vd." + stage_.members.at(f_.results[k].name);
@@ -186,14 +186,16 @@ void FunctionPrinter::nameLoopValues(ExprId loop, std::size_t carried, std::vect
         (k ? hints[k - 1] : indexHint) = f_.hints[i];
     }
     index = stage_.namer.local(indexHint ? stage_.module.names->text(indexHint) : "i");
+    const std::vector<std::uint32_t>& results = resultsOf_[loop.index];
+    for (std::uint32_t i : results)
+        if (Name& hint = hints[f_.exprs[i].payload]; !hint) hint = f_.hints[i];
     for (std::size_t k = 0; k < carried; k++)
         names.push_back(stage_.namer.local(hints[k] ? stage_.module.names->text(hints[k]) : "sum"));
     for (std::uint32_t i : argumentsOf_[number]) {
         std::uint32_t k = f_.exprs[i].payload & 255;
         names_[i] = k ? names[k - 1] : index;
     }
-    if (auto parts = resultsOf_.find(loop.index); parts != resultsOf_.end())
-        for (std::uint32_t i : parts->second) names_[i] = names[f_.exprs[i].payload];
+    for (std::uint32_t i : results) names_[i] = names[f_.exprs[i].payload];
 }
 
 void FunctionPrinter::loop(const Stmt& s) {
@@ -278,6 +280,9 @@ void FunctionPrinter::assign(const std::string& target, ExprId value, ExprId sel
         if (isSelf(o[0])) return stage_.out.line({target, " ", op, "= ", textOf(o[1]), ";"});
         if (sum && isSelf(o[1])) return stage_.out.line({target, " ", op, "= ", textOf(o[0]), ";"});
     }
+    if (names_[value.index].empty() && v.op == Op::Select && isSelf(f_.operand(value, 2)))
+        return stage_.out.line(
+            {"if (", textOf(f_.operand(value, 0)), ") ", target, " = ", textOf(f_.operand(value, 1)), ";"});
     stage_.out.line({target, " = ", textOf(value), ";"});
 }
 

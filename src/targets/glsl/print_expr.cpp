@@ -17,6 +17,12 @@ using namespace ir;
 
 static constexpr int kPostfix = 15, kUnary = 14, kTernary = 1;
 
+// Whether the bits of a float are those of a number of few digits without a fraction, other than -0.
+static bool isWhole(std::uint32_t word) {
+    const float value = std::bit_cast<float>(word);
+    return value == std::trunc(value) && std::abs(value) < 1e6f && word != 0x80000000u;
+}
+
 static void writeNumber(std::string& to, Scalar scalar, std::uint32_t word) {
     char text[kFloatText];
     switch (scalar) {
@@ -38,11 +44,11 @@ static void writeNumber(std::string& to, Scalar scalar, std::uint32_t word) {
                                         : "uintBitsToFloat(0xff800000u)";
                 return;
             }
-            const bool isWhole = value == std::trunc(value) && std::abs(value) < 1e6f && word != 0x80000000u;
+            const bool whole = isWhole(word);
             char* end =
-                isWhole ? std::to_chars(text, std::end(text), static_cast<int>(value)).ptr : writeFloat(text, value);
+                whole ? std::to_chars(text, std::end(text), static_cast<int>(value)).ptr : writeFloat(text, value);
             to.append(text, end);
-            if (isWhole || std::string_view(text, end).find_first_of(".e") == std::string_view::npos) to += ".0";
+            if (whole || std::string_view(text, end).find_first_of(".e") == std::string_view::npos) to += ".0";
             return;
         }
         case Scalar::None:
@@ -61,10 +67,13 @@ void writeConstant(std::string& to, Type type, const std::uint32_t* words) {
         same = true;
         for (int i = 0; i < n; i++) same = same && words[i] == (i % (rows + 1) ? 0 : words[0]);
     }
+    // A constructor converts, so whole numbers need no point.
+    const bool areWhole = scalar == Scalar::Float && std::all_of(words, words + n, isWhole);
     to.append(typeName(type)) += '(';
     for (int i = 0; i < (same ? 1 : n); i++) {
         if (i) to += ", ";
-        writeNumber(to, scalar, words[i]);
+        const int whole = areWhole ? static_cast<int>(std::bit_cast<float>(words[i])) : 0;
+        writeNumber(to, areWhole ? Scalar::Integer : scalar, areWhole ? static_cast<std::uint32_t>(whole) : words[i]);
     }
     to += ')';
 }

@@ -202,7 +202,7 @@ TEST(Print, SumsUpInPlace) {
     %w = mul float %c, %z
     %loop = loop tuple loop 0, %n | %a, %b, %c | %u, %v, %w)"));
     p.expect("for (int i = 0; i < n; i++)");
-    p.expect("        x += a;\n        y -= b;\n        z *= c;\n");
+    p.expect("\t\tx += a;\n\t\ty -= b;\n\t\tz *= c;\n");
 }
 
 // y -= (a - b) would be another value as y = y - a - b.
@@ -225,7 +225,7 @@ TEST(Print, AssignsInAnOrderThatKeepsWhatIsStillRead) {
     %w = sin float %z
     %loop = loop tuple loop 0, %n | %a, %b, %c | %u, %v, %w)"));
     std::string_view text = p.sources.pixel;
-    std::size_t x = text.find("        x *= y"), y = text.find("        y = "), z = text.find("        z = ");
+    std::size_t x = text.find("\t\tx *= y"), y = text.find("\t\ty = "), z = text.find("\t\tz = ");
     EXPECT_NE(z, text.npos) << text;
     EXPECT_LT(x, y) << text;
     EXPECT_LT(y, z) << text;
@@ -233,13 +233,13 @@ TEST(Print, AssignsInAnOrderThatKeepsWhatIsStillRead) {
 
 TEST(Print, SwapsThroughAVariable) {
     Print p(loop("    %loop = loop tuple loop 0, %n | %a, %b, %c | %y, %x, %z"));
-    p.expect("        float next = y;\n        y = x;\n        x = next;\n");
+    p.expect("\t\tfloat next = y;\n\t\ty = x;\n\t\tx = next;\n");
     p.expectNot("z = z");
 }
 
 TEST(Print, TurnsRings) {
     Print p(loop("    %loop = loop tuple loop 0, %n | %a, %b, %c | %y, %z, %x"));
-    p.expect("        float next = y;\n        y = z;\n        z = x;\n        x = next;\n");
+    p.expect("\t\tfloat next = y;\n\t\ty = z;\n\t\tz = x;\n\t\tx = next;\n");
 }
 
 // Matrices multiply by their components in the IR, by rows and columns in *=.
@@ -384,7 +384,7 @@ TEST(Print, ConstantsReadBack) {
               std::string::npos);
     Print(expression("%x = constant float 1e30", "float"), false).expect("1e+30");
     Print(expression("%x = constant float 0x7f800000", "float"), false).expect("uintBitsToFloat(0x7f800000u)");
-    Print(expression("%x = constant vector3 2, 2, 2\n%y = add vector3 %u, %x", "vector3"), false).expect("vec3(2.0)");
+    Print(expression("%x = constant vector3 2, 2, 2\n%y = add vector3 %u, %x", "vector3"), false).expect("vec3(2)");
 }
 
 // Random programs: what is printed compiles.

@@ -78,8 +78,7 @@ std::string identifier(std::string_view text) {
     return out.empty() || out == "_" ? "v" : out;
 }
 
-bool Namer::take(std::string_view name, NameSet& set) {
-    const std::uint32_t hash = hashText(name);
+bool Namer::take(std::string_view name, std::uint32_t hash, NameSet& set) {
     if (name.starts_with("gl_") || reserved_.contains(name, hash)) return false;
     if (&set == &global_) return !local_.contains(name, hash) && global_.insert(name, hash).second;
     if (!global_.contains(name, hash)) return local_.insert(name, hash).second;
@@ -88,23 +87,30 @@ bool Namer::take(std::string_view name, NameSet& set) {
 }
 
 std::string Namer::fresh(std::string_view wanted, NameSet& set) {
-    bool isTried = isIdentifier(wanted);
-    if (isTried && take(wanted, set)) return std::string(wanted);
-    std::string name = isTried ? std::string(wanted) : identifier(wanted);
-    if (name.starts_with("gl_")) {
-        name.replace(0, 2, "v");
-        isTried = false;
+    std::string name;
+    const std::uint32_t hash = hashText(wanted);
+    std::size_t known = numbered_.find(wanted, hash);
+    if (known < numbered_.size()) {  // it was taken before
+        name = wanted;
+    } else {
+        bool isTried = isIdentifier(wanted);
+        if (isTried && take(wanted, hash, set)) return std::string(wanted);
+        name = isTried ? std::string(wanted) : identifier(wanted);
+        if (name.starts_with("gl_")) {
+            name.replace(0, 2, "v");
+            isTried = false;
+        }
+        if (!isTried && take(name, hashText(name), set)) return name;
+        if (classOf(name.back()) == kDigit) name += '_';
+        known = numbered_.insert(name, hashText(name)).first;
+        if (known == next_.size()) next_.push_back(2);
     }
-    if (!isTried && take(name, set)) return name;
-    if (classOf(name.back()) == kDigit) name += '_';
     const std::size_t stem = name.size();
-    const std::size_t known = numbered_.insert(name, hashText(name)).first;
-    if (known == next_.size()) next_.push_back(2);
     do {
         char digits[12];
         name.resize(stem);
         name.append(digits, std::to_chars(digits, std::end(digits), next_[known]++).ptr);
-    } while (!take(name, set));
+    } while (!take(name, hashText(name), set));
     return name;
 }
 

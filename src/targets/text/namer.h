@@ -44,6 +44,11 @@ class NameSet {
     bool contains(std::string_view name, std::uint32_t hash) const {
         return !slots_.empty() && slots_[slotOf(name, hash)] != 0;
     }
+    // The number of the name, or how many there are.
+    std::size_t find(std::string_view name, std::uint32_t hash) const {
+        const std::uint32_t slot = slots_.empty() ? 0 : slots_[slotOf(name, hash)];
+        return slot ? slot - 1 : size();
+    }
     // The number of the name, and whether it is new.
     std::pair<std::size_t, bool> insert(std::string_view name, std::uint32_t hash);
     void clear();
@@ -81,7 +86,7 @@ class Namer {
 
   private:
     // Puts a name into one of the sets; false where it is taken.
-    bool take(std::string_view name, NameSet& set);
+    bool take(std::string_view name, std::uint32_t hash, NameSet& set);
     std::string fresh(std::string_view wanted, NameSet& set);
 
     ReservedWords reserved_;

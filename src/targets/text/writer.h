@@ -1,4 +1,4 @@
-// Lines of text with indentation.
+// Lines of text, indented by tabs: one character for each level, as wide as the reader likes.
 #pragma once
 
 #include <initializer_list>
@@ -12,7 +12,7 @@ class Writer {
     Writer() { out_.reserve(kUsual); }
     // A whole line at the present depth; an empty one stays empty.
     void line(std::string_view text = {}) {
-        if (!text.empty()) out_.append(static_cast<std::size_t>(depth_) * 4, ' ').append(text);
+        if (!text.empty()) begin().append(text);
         out_ += '\n';
     }
     // The same, from parts.
@@ -22,7 +22,7 @@ class Writer {
         out_ += '\n';
     }
     // A line bit by bit: what is appended to the text that begin() returns, up to end(), is its content.
-    std::string& begin() { return out_.append(static_cast<std::size_t>(depth_) * 4, ' '); }
+    std::string& begin() { return out_.append(static_cast<std::size_t>(depth_), '\t'); }
     void end(std::string_view text = {}) { out_.append(text) += '\n'; }
     // Lines as they are.
     void raw(std::string_view lines) { out_.append(lines); }

@@ -15,7 +15,7 @@ TEST(Writer, Indents) {
     w.line("z;");
     w.close();
     w.close("};");
-    EXPECT_EQ(w.take(), "void main()\n{\n    x = 1;\n\n    if (y)\n    {\n        z;\n    }\n};\n");
+    EXPECT_EQ(w.take(), "void main()\n{\n\tx = 1;\n\n\tif (y)\n\t{\n\t\tz;\n\t}\n};\n");
 }
 
 std::string comment(std::string_view text, std::size_t width = 118) {
