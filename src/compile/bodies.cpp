@@ -93,7 +93,7 @@ Name NodeBodies::nameOf(doc::NodeDef def) const {
     Name name = definitions_.row(def).name;
     const doc::Document* home = definitions_.element(def).document;
     for (Library* l : libraries_) {
-        if (&l->document() == home) break;
+        if (&l->document() == home) continue;
         if (l->find(name)) return names_.intern(fmt::format("{}#{}", names_.text(name), def.layer));
     }
     return name;

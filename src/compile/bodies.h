@@ -32,6 +32,10 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     const ir::Function* find(Name name) override { return made_.findOwn(name); }
     const ir::LeafInfo* findLeaf(Name name) override;
     const ir::Module& made() const { return made_; }
+    // Keeps a function that was made of these, under its name.
+    void keep(ir::Function function) { made_.put(std::move(function)); }
+    // Whether the function of a node came with a library that was precompiled.
+    bool isPrecompiled(Name function) const { return !made_.findOwn(function); }
     // Documents whose geometric properties count, beside those of the libraries.
     void addDocument(const doc::Document& document) { documents_.push_back(&document); }
 

@@ -14,6 +14,7 @@
 #include "doc/upgrade.h"
 #include "doc/write.h"
 #include "graph/graph.h"
+#include "ir/builder.h"
 #include "ir/text.h"
 #include "ir/validate.h"
 #include "passes/expand.h"
@@ -154,6 +155,8 @@ class Prefiltered final : public ir::FunctionSource {
     const ir::Module& module_;
 };
 
+constexpr std::string_view kFormNode = "node";  // see Compilation::completeForm
+
 // One element on its way to a shader. The stages in the order in which they run.
 struct Compilation {
     const doc::Document& document;
@@ -177,7 +180,10 @@ struct Compilation {
 
     bool run(Shader& shader) {
         dumpDocument();
-        if (!makeGraph() || !lower() || !specialise() || !shade()) return false;
+        if (!makeGraph() || !lower()) return false;
+        const bool isComplete = takeCompleteForm();
+        if (!specialise() || !(isComplete || shade())) return false;
+        finishPixel();
         interface = passes::makeStages(module, pixel, vertex);
         interface.usesBlocks = options.blocks;
         interface.bindingBase = options.bindingBase;
@@ -198,7 +204,150 @@ struct Compilation {
     bool findCosts(std::vector<passes::NodeCost>& costs) {
         traces = true;
         if (!makeGraph() || !lower() || !specialise() || !shade()) return false;
+        finishPixel();
         costs = passes::costsByNode(module, pixel);
+        return true;
+    }
+
+    // The complete form of a node that makes a surface of numbers: what the pixel's function becomes where every input
+    // of the node may change, as a function of the inputs. A library's were made when it was packed, which saves each
+    // document most of the way. Geometric properties are its own, but for inputs that are connected. Its name; none
+    // where there is no such form, because the node chooses attributes of the mesh, say, or is worth a warning.
+    Name completeForm(doc::NodeDef def, Name function, std::span<const Name> connected) {
+        std::string text(names.text(function));
+        text += "@complete";
+        for (Name input : connected) text.append("_").append(names.text(input));
+        Name name = names.intern(text);
+        if (bodies.isPrecompiled(function)) return module.find(name) ? name : Name();
+        return bodies.made().findOwn(name) || makeCompleteForm(def, name, connected) ? name : Name();
+    }
+
+    bool makeCompleteForm(doc::NodeDef def, Name name, std::span<const Name> connected) {
+        doc::Document blank(names, document.known());
+        const doc::NodeDefRow& row = definitions.row(def);
+        doc::ElementId node = blank.append(blank.root(), names.text(row.category), kFormNode);
+        blank.set(node, blank.known().type, row.output);
+        blank.set(node, blank.known().nodedef, row.name);
+        for (Name input : connected) {
+            const Name type = definitions.input(def, input)->type;
+            blank.set(blank.append(blank.root(), "constant", names.text(input)), blank.known().type, type);
+            doc::ElementId port = blank.append(node, "input", names.text(input));
+            blank.set(port, blank.known().type, type);
+            blank.set(port, blank.known().nodename, input);
+        }
+        GenerateOptions how;
+        how.interface = Interface::Complete;
+        Diagnostics told;
+        passes::Specialisations ownMade;
+        Compilation c{blank, node, how, told, names, definitions, bodies, ownMade, nullptr, texts, ir::Module(names)};
+        c.module.sources = module.sources;
+        bodies.forgetNames();
+        if (!c.makeGraph() || !c.hasCompleteForm(c.graph.nodes.back())) return false;
+        if (!c.lower() || !c.specialise() || !c.baked.empty() || !c.shade()) return false;
+        c.finishPixel();
+        return told.all().empty() && c.takeInputs(name) && c.keepForm(name);
+    }
+
+    // Makes parameters of the uniforms that stand for the inputs of the one node.
+    bool takeInputs(Name name) {
+        ir::Function& f = *module.findOwn(pixel);
+        const graph::Node& node = graph.nodes.back();
+        std::unordered_map<Name, std::uint32_t> inputs;  // by uniform
+        for (const graph::Input& input : graph.inputsOf(node)) {
+            const std::string_view port = names.text(input.port->name);
+            const bool isConnected = input.source.kind == graph::Source::Kind::Node;
+            Name uniform =
+                names.intern(isConnected ? fmt::format("{}_value", port) : fmt::format("{}_{}", kFormNode, port));
+            inputs[uniform] = static_cast<std::uint32_t>(f.params.size());
+            f.params.push_back({input.port->name, input.type});
+        }
+        for (const auto& each : module.functions)
+            for (ir::Expr& e : each->exprs) {
+                if (e.op != ir::Op::Uniform) continue;
+                auto at = inputs.find(Name(e.payload));
+                if (at == inputs.end() || each.get() != &f) return false;
+                e.op = ir::Op::Param;
+                e.payload = at->second;
+            }
+        f.name = name;
+        f.isInline = true;
+        return true;
+    }
+
+    // Gives the functions that the form calls names of their own and keeps them all.
+    bool keepForm(Name form) {
+        std::unordered_map<Name, Name> renamed;
+        for (const auto& f : module.functions) {
+            std::string_view own = names.text(f->name);
+            std::string_view stem = own.substr(0, own.find('@'));
+            if (f->name != form)
+                renamed[f->name] = names.intern(fmt::format("{}@{}{}", stem, names.text(form), renamed.size()));
+        }
+        for (const auto& f : module.functions) {
+            for (ir::Expr& e : f->exprs)
+                if (e.op == ir::Op::Call) e.payload = renamed.at(Name(e.payload)).index;
+            if (f->name != form) f->name = renamed.at(f->name);
+            f->isApart = f->name != form;
+            bodies.keep(std::move(*f));
+        }
+        return true;
+    }
+
+    // The node whose surface the output is, and its call; none where the output is anything else.
+    const graph::Node* surface(const ir::Function& entry, ir::ExprId& call) const {
+        graph::Source source = graph.outputs[0].source;
+        call = entry.results[0].value;
+        while (source.kind == graph::Source::Kind::Node) {
+            const graph::Node& node = graph.nodes[source.node.index];
+            const Name type = definitions.row(graph.kindOf(node).def).output;
+            while (entry[call].op == ir::Op::Retype) call = entry.operand(call, 0);
+            if (entry[call].op != ir::Op::Call) return nullptr;
+            if (type == document.known().surfaceshader) return &node;
+            auto inputs = graph.inputsOf(node);
+            auto below = std::find_if(inputs.begin(), inputs.end(),
+                                      [](const graph::Input& i) { return i.type == ir::Type::SurfaceShader; });
+            if (type != document.known().material || below == inputs.end()) return nullptr;
+            source = below->source;
+            call = entry.operand(call, static_cast<std::size_t>(below - inputs.begin()));
+        }
+        return nullptr;
+    }
+
+    // Whether a node of a library makes a surface of numbers, by a graph.
+    bool hasCompleteForm(const graph::Node& node) const {
+        const doc::NodeDef def = graph.kindOf(node).def;
+        if (definitions.element(def).document == &document) return false;
+        const doc::Implementation how = definitions.implementation(def);
+        if (how.kind != doc::Implementation::Kind::Graph || how.graph.document == &document) return false;
+        auto inputs = graph.inputsOf(node);
+        return std::all_of(inputs.begin(), inputs.end(),
+                           [](const graph::Input& i) { return ir::componentCount(i.type) > 0; });
+    }
+
+    bool isProperty(doc::NodeDef def, const doc::Port& port) const {
+        return static_cast<bool>(definitions.element(def, port).attribute(document.known().defaultgeomprop));
+    }
+
+    // Makes of the call of a surface node one of its complete form. False where that has none or would be another.
+    bool takeCompleteForm() {
+        if (options.interface != Interface::Complete || options.environment != EnvironmentLight::Samples ||
+            options.transparency)
+            return false;
+        ir::Function& entry = *module.findOwn(pixel);
+        ir::ExprId call;
+        const graph::Node* node = surface(entry, call);
+        if (!node || !hasCompleteForm(*node)) return false;
+        const doc::NodeDef def = graph.kindOf(*node).def;
+        std::vector<Name> connected;
+        for (const graph::Input& input : graph.inputsOf(*node))
+            if (input.source.kind == graph::Source::Kind::Node && isProperty(def, *input.port))
+                connected.push_back(input.port->name);
+        Name form = completeForm(def, Name(entry[call].payload), connected);
+        if (!form) return false;
+        ir::Builder b(module, entry);
+        std::vector<ir::ExprId> inputs(entry.operandsOf(call).begin(), entry.operandsOf(call).end());
+        const ir::ResultValue& color = module.find(form)->results[0];
+        entry.results = {{color.name, color.type, b.call(form, color.type, inputs)}};
         return true;
     }
 
@@ -318,12 +467,14 @@ struct Compilation {
             passes::expandToLongWork(module, pixel);
             passes::gather(module, pixel);
         }
-        if (!passes::specialise(module, pixel, {}, made, diagnostics, limits)) return false;
+        return passes::specialise(module, pixel, {}, made, diagnostics, limits);
+    }
+
+    void finishPixel() {
         passes::expandCalledOnce(module, pixel);
         passes::prune(module, std::array{pixel});
         if (options.flipV) passes::flipTextures(module);
         dump(StageName::Shade);
-        return true;
     }
 
     void legalise(ir::Function& f) { glsl::legalise(f); }
@@ -479,6 +630,27 @@ Result<std::vector<passes::NodeCost>> Compiler::costs(const doc::Document& docum
     return costs;
 }
 
+// Of all nodes of a library that make surfaces: with no geometric property connected, and with one.
+static void makeCompleteForms(NameTable& names, const doc::Definitions& definitions, NodeBodies& bodies,
+                              Library& library) {
+    const doc::Document none(names, library.document().known());
+    const GenerateOptions how;
+    Diagnostics told;
+    passes::Specialisations made;
+    text::FunctionTexts texts;
+    Compilation c{none, none.root(), how, told, names, definitions, bodies, made, nullptr, texts, ir::Module(names)};
+    c.module.sources = {&bodies, &library};
+    for (const doc::NodeDefRow& row : library.index().nodedefs)
+        if (row.output == none.known().surfaceshader) {
+            const doc::NodeDef def = definitions.byName(row.name);
+            const Name function = bodies.functionOf(def, told);
+            if (!function) continue;
+            c.completeForm(def, function, {});
+            for (const doc::Port& port : definitions.inputs(def))
+                if (c.isProperty(def, port)) c.completeForm(def, function, std::span(&port.name, 1));
+        }
+}
+
 std::vector<std::uint8_t> packLibrary(std::vector<LibraryFile> files, Diagnostics& diagnostics) {
     std::vector<std::uint8_t> image;
     guarded(diagnostics, "library", [&] {
@@ -493,6 +665,7 @@ std::vector<std::uint8_t> packLibrary(std::vector<LibraryFile> files, Diagnostic
             if (doc::NodeDef def = definitions.byName(row.name); definitions.implementation(def))
                 valid = bodies.functionOf(def, diagnostics) && valid;
         if (!valid) return false;
+        makeCompleteForms(names, definitions, bodies, *library);
         std::vector<const ir::Function*> functions = library->functions();
         for (const auto& f : bodies.made().functions) functions.push_back(f.get());
         std::sort(functions.begin(), functions.end(), [](const auto* a, const auto* b) { return a->name < b->name; });

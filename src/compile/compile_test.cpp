@@ -628,6 +628,62 @@ TEST(Compile, UserLibraryGoesBeforeTheBuiltInOne) {
     EXPECT_NE(shader->pixel.find("0.75"), std::string::npos) << shader->pixel;
 }
 
+TEST(Compile, UserLibraryMayUseTheNamesOfTheBuiltInOne) {
+    Session s;
+    ASSERT_TRUE(s.compiler.addLibrary(
+        {{"mine.mtlx", wrap(R"(<nodedef name="ND_standard_surface_surfaceshader" node="standard_surface">
+            <input name="base_color" type="color3" value="0, 0, 0"/><output name="out" type="surfaceshader"/></nodedef>
+        <nodegraph name="NG_glow" nodedef="ND_standard_surface_surfaceshader">
+            <uniform_edf name="glow" type="EDF"><input name="color" type="color3" interfacename="base_color"/></uniform_edf>
+            <surface name="s" type="surfaceshader"><input name="edf" type="EDF" nodename="glow"/></surface>
+            <output name="out" type="surfaceshader" nodename="s"/></nodegraph>)")}},
+        s.diagnostics))
+        << s.diagnostics.text();
+    s.read(wrap(R"(<standard_surface name="s" type="surfaceshader">
+        <input name="base_color" type="color3" value="0.25, 0.5, 0.75"/></standard_surface>)"));
+    for (Interface interface : {Interface::Live, Interface::Baked, Interface::Complete}) {
+        Result<Shader> shader = s.generate("s", interface);
+        ASSERT_TRUE(shader) << s.diagnostics.text();
+        const char* color =
+            interface == Interface::Baked ? "out1 = vec4(0.25, 0.5, 0.75, 1.0);" : "out1 = vec4(s_base_color, 1.0);";
+        EXPECT_NE(shader->pixel.find(color), std::string::npos) << shader->pixel;
+    }
+}
+
+// A node of a library comes to its shader by its complete form, the same node of a document by the whole way.
+TEST(Compile, CompleteFormIsWhatTheWholeWayMakes) {
+    const std::string node = R"(<nodedef name="ND_varnish" node="varnish">
+            <input name="tint" type="color3" value="0.5, 0.5, 0.5"/><input name="gloss" type="float" value="0.25"/>
+            <input name="normal" type="vector3" defaultgeomprop="Nworld"/><output name="out" type="surfaceshader"/></nodedef>
+        <nodegraph name="NG_varnish" nodedef="ND_varnish">
+            <oren_nayar_diffuse_bsdf name="wood" type="BSDF"><input name="color" type="color3" interfacename="tint"/>
+                <input name="normal" type="vector3" interfacename="normal"/></oren_nayar_diffuse_bsdf>
+            <combine2 name="alpha" type="vector2"><input name="in1" type="float" interfacename="gloss"/>
+                <input name="in2" type="float" interfacename="gloss"/></combine2>
+            <dielectric_bsdf name="coat" type="BSDF"><input name="weight" type="float" interfacename="gloss"/>
+                <input name="roughness" type="vector2" nodename="alpha"/>
+                <input name="normal" type="vector3" interfacename="normal"/></dielectric_bsdf>
+            <layer name="both" type="BSDF"><input name="top" type="BSDF" nodename="coat"/>
+                <input name="base" type="BSDF" nodename="wood"/></layer>
+            <surface name="s" type="surfaceshader"><input name="bsdf" type="BSDF" nodename="both"/></surface>
+            <output name="out" type="surfaceshader" nodename="s"/></nodegraph>)";
+    const std::string plain = R"(<varnish name="v" type="surfaceshader"/>)";
+    const std::string bent =
+        R"(<normalize name="n" type="vector3"><input name="in" type="vector3" value="1, 2, 3"/></normalize>
+        <varnish name="v" type="surfaceshader"><input name="normal" type="vector3" nodename="n"/></varnish>)";
+    for (const std::string& user : {plain, bent}) {
+        Session whole, form;
+        ASSERT_TRUE(form.compiler.addLibrary({{"mine.mtlx", wrap(node)}}, form.diagnostics)) << form.diagnostics.text();
+        form.read(wrap(user));
+        whole.read(wrap(node + user));
+        Result<Shader> a = form.generate("v", Interface::Complete), b = whole.generate("v", Interface::Complete);
+        ASSERT_TRUE(a && b) << form.diagnostics.text() << whole.diagnostics.text();
+        EXPECT_EQ(a->pixel, b->pixel);
+        EXPECT_EQ(a->vertex, b->vertex);
+        EXPECT_NE(a->pixel.find("for (int"), std::string::npos);
+    }
+}
+
 TEST(Compile, MistakesOfALibraryAreReported) {
     Session s;
     EXPECT_FALSE(s.compiler.addLibrary({{"bad.mtlx", "<materialx version=\"1.39\"><nodedef"}}, s.diagnostics));
