@@ -98,10 +98,11 @@ inline color microfacet_fresnel(boolean clear, float ior, color base, color rise
 
 // The environment's light by n visible normals, which mirror it or refract it.
 //
-// What refracts is a solid sphere (microfacet_refraction). Mirrored light weighs G2 / G1, and the sum is divided by the sum of these weights and multiplied by the directional
-// albedo: so a white furnace gains nothing at any n. After Turquin 2019 the albedo is that of one bounce, E times the
-// mean reflectance, and of all further ones, which lose what is missing in E but for a further factor of mean
-// reflectance. E, the share that a white surface mirrors in one bounce, comes from the same samples.
+// What refracts is a solid sphere (microfacet_refraction). Mirrored light weighs G2 / G1, and the sum is divided by the
+// sum of these weights and multiplied by the directional albedo: so a white furnace gains nothing at any n. After
+// Turquin 2019 the albedo is that of one bounce, E times the mean reflectance, and of all further ones, which lose what
+// is missing in E but for a further factor of mean reflectance. E, the share that a white surface mirrors in one bounce,
+// comes from the same samples.
 void microfacet_light(vector2 roughness, boolean refracts, boolean retroreflective, boolean clear, float ior, color base,
                       color rise, color bend, color dip, float exponent, vector N, vector V, vector X,
                       output color radiance, output color albedo)

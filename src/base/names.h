@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/handle.h"
+#include "base/hash.h"
 
 namespace shaderx {
 
@@ -48,16 +49,11 @@ constexpr std::uint64_t shortText(std::string_view text) {
     return byte(0) | byte(n / 2) << 8 | byte(n - 1) << 16;
 }
 
-// Hash of a text; also that of NameImage's slots, so it is part of the library's file format. Eight bytes at a time are
-// multiplied by the golden ratio and folded, so that the low bits, which pick the slot, depend on every byte.
+// Hash of a text, eight bytes at a time; also that of NameImage's slots, so it is part of the library's file format.
 constexpr std::uint32_t hashText(std::string_view text) {
     std::uint64_t h = text.size();
-    auto mix = [&h](std::uint64_t word) {
-        h = (h ^ word) * 0x9e3779b97f4a7c15u;
-        h ^= h >> 32;
-    };
-    for (; text.size() > 8; text.remove_prefix(8)) mix(loadText<std::uint64_t>(text.data()));
-    mix(shortText(text));
+    for (; text.size() > 8; text.remove_prefix(8)) h = mixHash(h, loadText<std::uint64_t>(text.data()));
+    h = mixHash(h, shortText(text));
     return static_cast<std::uint32_t>(h ^ h >> 17);
 }
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/hash.h"
 #include "ir/module.h"
 
 namespace shaderx {
@@ -27,12 +28,7 @@ class FinishedFunctions {
     // Of the first half, which has most of the operations and tells nearly all functions apart.
     struct KeyHash {
         std::size_t operator()(const Key& key) const noexcept {
-            std::uint64_t h = key.size();
-            for (std::size_t i = 0; i + 1 < key.size() / 2; i += 2) {
-                h = (h ^ (key[i] | std::uint64_t(key[i + 1]) << 32)) * 0x9e3779b97f4a7c15ull;
-                h ^= h >> 32;
-            }
-            return h;
+            return hashWords(std::span(key).first(key.size() / 2));
         }
     };
     void keyOf(const ir::Module& module, const ir::Function& f);

@@ -12,6 +12,11 @@
 
 namespace shaderx {
 
+static char* newLine(char* to, std::size_t indent) {
+    *to++ = '\n';
+    return std::fill_n(to, indent, ' ');
+}
+
 char* JsonWriter::begin(std::size_t characters) {
     if (keyed_) {
         keyed_ = false;
@@ -21,12 +26,10 @@ char* JsonWriter::begin(std::size_t characters) {
     const bool lines = lines_ >> depth_ & 1;
     char* to = room(characters + indent + 2);
     if (!first_) *to++ = ',';
-    if (lines) {
-        *to++ = '\n';
-        to = std::fill_n(to, indent, ' ');
-    } else if (!first_) {
+    if (lines)
+        to = newLine(to, indent);
+    else if (!first_)
         *to++ = ' ';
-    }
     first_ = false;
     return to;
 }
@@ -45,10 +48,7 @@ void JsonWriter::close(char bracket) {
     depth_--;
     const std::size_t indent = static_cast<std::size_t>(depth_) * 2;
     char* to = room(indent + 3);
-    if (lines && !first_) {
-        *to++ = '\n';
-        to = std::fill_n(to, indent, ' ');
-    }
+    if (lines && !first_) to = newLine(to, indent);
     *to++ = bracket;
     if (depth_ == 0) *to++ = '\n';
     end(to);

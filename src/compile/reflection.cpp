@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 #include <fmt/format.h>
 
@@ -400,24 +399,13 @@ std::string Shader::reflection() const {
     return json.take();
 }
 
-// Multiplies and folds eight bytes a step, read as little-endian numbers; the last ones are filled up with zeros.
+// Eight bytes a step; the last ones are filled up with zeros.
 std::uint64_t stableHash(std::string_view text, std::uint64_t seed) {
     std::uint64_t h = seed ^ (text.size() * 0x9e3779b97f4a7c15u);
-    auto mix = [&](std::size_t at, std::size_t bytes) {
-        std::uint64_t word = 0;
-        if constexpr (std::endian::native == std::endian::little) {
-            if (bytes > 0) std::memcpy(&word, text.data() + at, bytes);
-        } else {
-            for (std::size_t k = 0; k < bytes; k++)
-                word |= std::uint64_t(static_cast<unsigned char>(text[at + k])) << 8 * k;
-        }
-        h = (h ^ word) * 0x9e3779b97f4a7c15u;
-        h ^= h >> 32;
-    };
-    std::size_t i = 0;
-    for (; i + 8 <= text.size(); i += 8) mix(i, 8);
-    mix(i, text.size() - i);
-    return h;
+    for (; text.size() >= 8; text.remove_prefix(8)) h = mixHash(h, loadText<std::uint64_t>(text.data()));
+    std::uint64_t rest = 0;
+    for (std::size_t k = 0; k < text.size(); k++) rest |= std::uint64_t(static_cast<unsigned char>(text[k])) << 8 * k;
+    return mixHash(h, rest);
 }
 
 }  // namespace shaderx

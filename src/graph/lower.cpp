@@ -61,7 +61,8 @@ struct Lowerer {
         }
         results.reserve(graph.nodes.size());
         firstResult.reserve(graph.nodes.size());
-        if (options.interface != Interface::Baked) module.uniforms.reserve(graph.nodes.size());
+        constexpr std::size_t kUsual = 8;
+        if (options.interface != Interface::Baked) module.uniforms.reserve(std::max(kUsual, graph.nodes.size()));
         for (const Node& n : graph.nodes) node(n);
         if (!ok) return false;
         for (const Output& o : graph.outputs) {
@@ -270,8 +271,6 @@ struct Lowerer {
     }
 
     Uniform& addUniform(doc::ElementId element, Type type) {
-        constexpr std::size_t kUsual = 8;
-        if (module.uniforms.empty()) module.uniforms.reserve(std::max(kUsual, module.uniforms.capacity()));
         Uniform& u = module.uniforms.emplace_back();
         u.name = uniformName(element);
         u.type = type;

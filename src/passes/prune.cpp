@@ -24,7 +24,6 @@ struct Use {
     std::vector<char> results, params{};
     std::vector<char> live{};  // expressions
     std::vector<Call> calls{};
-    std::size_t sorted = 0;  // expressions that were asked for calls
     bool isEntry = false;
     bool isStale = true;      // other results are needed than when it was marked
     bool readsLess = false;   // fewer parameters than its callers knew
@@ -40,31 +39,49 @@ struct Pruner {
     std::vector<std::uint32_t> callOf{};  // of the function under way: by expression the callee's number
     std::vector<ExprId> instead{};        // of results of calls that have one left: the call
 
-    // Callees first, each once; the call graph has no cycles.
-    void sort(Name entry) {
-        std::vector<std::uint32_t> stack;
-        auto push = [&](Name name) {
-            const auto [known, isNew] = numbers.try_emplace(name, static_cast<std::uint32_t>(uses.size()));
-            if (!isNew) return known->second;
-            Function* f = module.findOwn(name);
-            ensure(f, "a call of a function that is not the module's own");
-            uses.push_back({f, std::vector<char>(f->results.size(), false)});
-            stack.push_back(known->second);
-            return known->second;
+    // Numbers the functions that the entries lead to, and their calls.
+    void find(std::span<const Name> entries) {
+        for (Name e : entries) numberOf(e);
+        for (std::uint32_t n = 0; n < uses.size(); n++) {
+            const Function& f = *uses[n].function;
+            std::vector<Call> calls;
+            for (std::uint32_t i = 0; i < f.exprs.size(); i++)
+                if (f.exprs[i].op == Op::Call) calls.push_back({i, numberOf(Name(f.exprs[i].payload))});
+            uses[n].calls = std::move(calls);
+        }
+    }
+
+    std::uint32_t numberOf(Name name) {
+        const auto [known, isNew] = numbers.try_emplace(name, static_cast<std::uint32_t>(uses.size()));
+        if (!isNew) return known->second;
+        Function* f = module.findOwn(name);
+        ensure(f, "a call of a function that is not the module's own");
+        uses.push_back({f, std::vector<char>(f->results.size(), false)});
+        return known->second;
+    }
+
+    // Callees first, each once, those that live calls lead to; the call graph has no cycles. All calls are live where
+    // nothing was marked.
+    void sort(std::span<const Name> entries) {
+        order.clear();
+        std::vector<char> isKnown(uses.size());
+        std::vector<std::pair<std::uint32_t, std::size_t>> stack;  // and the call to look at next
+        auto push = [&](std::uint32_t number) {
+            if (!isKnown[number]) stack.push_back({number, 0});
+            isKnown[number] = true;
         };
-        push(entry);
-        while (!stack.empty()) {
-            const std::uint32_t number = stack.back();
-            const Function& f = *uses[number].function;
-            std::size_t i = uses[number].sorted;
-            while (i < f.exprs.size() && f.exprs[i].op != Op::Call) i++;
-            uses[number].sorted = i + 1;
-            if (i == f.exprs.size()) {
-                order.push_back(number);
-                stack.pop_back();
-            } else {
-                const std::uint32_t callee = push(Name(f.exprs[i].payload));
-                uses[number].calls.push_back({static_cast<std::uint32_t>(i), callee});
+        for (Name e : entries) {
+            push(numbers[e]);
+            while (!stack.empty()) {
+                auto& [number, next] = stack.back();
+                const Use& use = uses[number];
+                while (next < use.calls.size() && !use.live.empty() && !use.live[use.calls[next].expr]) next++;
+                if (next < use.calls.size()) {
+                    push(use.calls[next++].callee);
+                } else {
+                    order.push_back(number);
+                    stack.pop_back();
+                }
             }
         }
     }
@@ -139,31 +156,6 @@ struct Pruner {
             uses[n].results = std::move(needed[n]);
         }
         return less;
-    }
-
-    // The same order of those that live calls lead to.
-    void sortLive(std::span<const Name> entries) {
-        order.clear();
-        std::vector<char> isKnown(uses.size());
-        std::vector<std::pair<std::uint32_t, std::size_t>> stack;  // and the call to look at next
-        auto push = [&](std::uint32_t number) {
-            if (!isKnown[number]) stack.push_back({number, 0});
-            isKnown[number] = true;
-        };
-        for (Name e : entries) {
-            push(numbers[e]);
-            while (!stack.empty()) {
-                auto& [number, next] = stack.back();
-                const Use& use = uses[number];
-                while (next < use.calls.size() && !use.live[use.calls[next].expr]) next++;
-                if (next < use.calls.size()) {
-                    push(use.calls[next++].callee);
-                } else {
-                    order.push_back(number);
-                    stack.pop_back();
-                }
-            }
-        }
     }
 
     // Whether anything of the function goes, or of the interface of those that it calls.
@@ -287,7 +279,8 @@ struct Pruner {
 
 void prune(Module& module, std::span<const Name> entries) {
     Pruner p{module};
-    for (Name e : entries) p.sort(e);
+    p.find(entries);
+    p.sort(entries);
     for (Name e : entries) {
         Use& use = p.uses[p.numbers[e]];
         use.isEntry = true;
@@ -299,7 +292,7 @@ void prune(Module& module, std::span<const Name> entries) {
         for (std::uint32_t n : p.order) p.mark(p.uses[n], round);
         round++;
     } while (p.forget());
-    p.sortLive(entries);
+    p.sort(entries);
     std::vector<Name> names;
     for (std::uint32_t n : p.order) {
         Use& use = p.uses[n];

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/diagnostics.h"
+#include "base/hash.h"
 #include "ir/module.h"
 
 namespace shaderx::passes {
@@ -19,17 +20,7 @@ struct Specialisations {
     // Of which function a clone is, and for which arguments.
     using Key = std::vector<std::uint32_t>;
     struct KeyHash {
-        std::size_t operator()(const Key& key) const noexcept {
-            std::uint64_t h = key.size();
-            auto mix = [&h](std::uint64_t word) {
-                h = (h ^ word) * 0x9e3779b97f4a7c15ull;
-                h ^= h >> 32;
-            };
-            std::size_t i = 0;
-            for (; i + 1 < key.size(); i += 2) mix(key[i] | std::uint64_t(key[i + 1]) << 32);
-            if (i < key.size()) mix(key[i]);
-            return h;
-        }
+        std::size_t operator()(const Key& key) const noexcept { return hashWords(key); }
     };
     struct Clone {
         ir::Function function;  // without a name if it is small enough to be expanded

@@ -362,10 +362,12 @@ void uniforms(Stage& stage, const passes::StageUniforms& used) {
     int index = 0;
     for (Context c : used.contexts) {
         const std::string& name = stage.namer.global(info(c).host);
-        if (info(c).type == Type::Texture2D)
+        if (info(c).type == Type::Texture2D) {
             samplerLine(stage, name, index);
-        else
-            beginUniform(stage, info(c).type, name).append(" = ").append(defaultText(c)), stage.out.end(";");
+            continue;
+        }
+        beginUniform(stage, info(c).type, name).append(" = ").append(defaultText(c));
+        stage.out.end(";");
     }
     if (!used.contexts.empty() && !used.uniforms.empty()) stage.out.line();
     for (Name name : used.uniforms)
