@@ -96,7 +96,7 @@ inline color microfacet_fresnel(boolean clear, float ior, color base, color rise
     return known(clear) ? F : clamp(F, 0.0, 1.0);
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 //
 // What refracts is a solid sphere (microfacet_refraction). Mirrored light weighs G2 / G1, and the sum is divided by the
 // sum of these weights and multiplied by the directional albedo: so a white furnace gains nothing at any n. After

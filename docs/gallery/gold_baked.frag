@@ -2,8 +2,8 @@
 
 // Gold
 
-uniform vec3 u_viewPosition = vec3(0.0);
-uniform mat4 u_envMatrix = mat4(-1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+uniform vec3 u_viewPosition = vec3(0);
+uniform mat4 u_envMatrix = mat4(-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
 uniform float u_envLightIntensity = 1.0;
 uniform int u_envRadianceMips = 1;
 uniform int u_envRadianceSamples = 16;
@@ -11,74 +11,71 @@ uniform sampler2D u_envRadiance;
 
 in VertexData
 {
-    vec3 positionWorld;
-    vec3 normalWorld;
+	vec3 positionWorld;
+	vec3 normalWorld;
 } vd;
 
 out vec4 out1;
 
-// Reads a latitude-longitude map in the direction d. v = 0 is the zenith; u runs with the azimuth from -z.
+// Reads a latitude-longitude map: v = 0 is the zenith, u runs with the azimuth from -z.
 vec3 environment_lookup(sampler2D map, vec3 d, float level)
 {
-    float v = 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0));
-    return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, v), level).xyz;
+	return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0))), level).xyz;
 }
 
-// Light that n visible normals mirror from the environment, or refract from it (microfacet_refraction).
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light(vec3 N, vec3 V)
 {
-    float x = dot(N, V);
-    vec3 tangent = V - N * x;
-    vec3 other = abs(N.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? cross(N, other) : tangent);
-    float NV = clamp(x, 0.0001, 1.0);
-    vec3 v = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
-    vec3 wide = vec3(0.0004, 0.0004, 1.0) * v;
-    float stretched = length(wide);
-    vec3 s = wide / stretched;
-    float count = float(u_envRadianceSamples);
-    float descent = (s.z + 1.0) / count;
-    float reach = NV + stretched;
-    float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (1.0053096e-06 * reach));
-    mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
-    vec2 azimuth = vec2(1.0, 0.0);
-    float total = 1e-08;
-    vec3 light = vec3(0.0);
-    vec3 share = vec3(0.0);
-    for (int i = 0; i < u_envRadianceSamples; i++)
-    {
-        float z = 1.0 - descent * (float(i) + 0.5);
-        vec3 h = s + vec3(azimuth * sqrt(1.0 - z * z), z);
-        vec3 slope = vec3(0.0004, 0.0004, 1.0) * h;
-        vec3 H = normalize(slope);
-        vec3 L = reflect(-v, H);
-        float NL = max(L.z, 0.0);
-        float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 1.5999998e-07)));
-        float x3 = dot(v, H);
-        float t = max(1.0 - x3, 0.0);
-        float t2 = t * t;
-        float t4 = t2 * t2;
-        vec3 v2 = (vec3(-0.15986317, 0.03904839, -0.40858942) * t4 + vec3(-0.043536447, -0.02653153, 0.18614247)) * (x3 * t2);
-        vec3 F = vec3(0.055999994, 0.22399998, 0.62700003) * (t * t4) + vec3(0.944, 0.776, 0.37299997) + v2;
-        vec3 F2 = weight * clamp(F, 0.0, 1.0);
-        vec3 d = frame * L;
-        float x4 = dot(slope, slope) / dot(h, h);
-        float r2 = x4 * x4;
-        float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
-        float whole = floor(best);
-        float level2 = whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0);
-        azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
-        total += weight;
-        light += F2 * environment_lookup(u_envRadiance, d, level2);
-        share += F2;
-    }
-    vec3 bounces = mix(share / total, vec3(1.0), min(reach * total / count, 1.0));
-    return light * (bounces / total);
+	float x = dot(N, V);
+	vec3 tangent = V - N * x;
+	vec3 v = cross(N, abs(N.y) < 0.9 ? vec3(0, 1, 0) : vec3(1, 0, 0));
+	vec3 x2 = normalize(dot(tangent, tangent) < 1e-08 ? v : tangent);
+	float NV = clamp(x, 0.0001, 1.0);
+	vec3 v2 = vec3(sqrt(1.0 - NV * NV), 0.0, NV);
+	vec3 wide = vec3(0.0004, 0.0004, 1.0) * v2;
+	float stretched = length(wide);
+	vec3 s = wide / stretched;
+	float count = float(u_envRadianceSamples);
+	float descent = (s.z + 1.0) / count;
+	float reach = NV + stretched;
+	float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(count / (1.0053096e-06 * reach));
+	mat3 frame = mat3(u_envMatrix) * mat3(x2, cross(N, x2), N);
+	vec2 azimuth = vec2(1, 0);
+	float total = 1e-08;
+	vec3 light = vec3(0);
+	vec3 share = vec3(0);
+	for (int i = 0; i < u_envRadianceSamples; i++)
+	{
+		float z = 1.0 - descent * (float(i) + 0.5);
+		vec3 h = s + vec3(azimuth * sqrt(1.0 - z * z), z);
+		vec3 slope = vec3(0.0004, 0.0004, 1.0) * h;
+		vec3 H = normalize(slope);
+		vec3 L = reflect(-v2, H);
+		float NL = max(L.z, 0.0);
+		float weight = NL / (stretched * NL + NV * sqrt(mix(NL * NL, 1.0, 1.5999998e-07)));
+		float x3 = dot(v2, H);
+		float t = max(1.0 - x3, 0.0);
+		float t2 = t * t;
+		float t4 = t2 * t2;
+		vec3 v3 = (vec3(-0.15986317, 0.03904839, -0.40858942) * t4 + vec3(-0.043536447, -0.02653153, 0.18614247)) * (x3 * t2);
+		vec3 F = weight * clamp(vec3(0.055999994, 0.22399998, 0.62700003) * (t * t4) + vec3(0.944, 0.776, 0.37299997) + v3, 0.0, 1.0);
+		vec3 d = frame * L;
+		float x4 = dot(slope, slope) / dot(h, h);
+		float r2 = x4 * x4;
+		float best = max(level - 0.25 * log2(r2 * r2 * (1.00001 - d.y * d.y)), 0.0);
+		float whole = floor(best);
+		vec3 v4 = F * environment_lookup(u_envRadiance, d, whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0));
+		azimuth = -0.7373689 * azimuth + vec2(-0.6754903, 0.6754903) * azimuth.yx;
+		total += weight;
+		light += v4;
+		share += F;
+	}
+	return light * (mix(share / total, vec3(1), min(reach * total / count, 1.0)) / total);
 }
 
 void main()
 {
-    vec3 normal = normalize(vd.normalWorld);
-    vec3 V = normalize(u_viewPosition - vd.positionWorld);
-    out1 = vec4(microfacet_light(faceforward(normal, -V, normal), V) * u_envLightIntensity, 1.0);
+	vec3 normal = normalize(vd.normalWorld);
+	vec3 V = normalize(u_viewPosition - vd.positionWorld);
+	out1 = vec4(microfacet_light(faceforward(normal, -V, normal), V) * u_envLightIntensity, 1.0);
 }

@@ -138,7 +138,7 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
 	return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0))), level).xyz;
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light(vec2 roughness, bool refracts, bool clear, float ior, vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V, vec3 X, out vec3 albedo)
 {
 	bool isotropic = roughness.x == roughness.y;

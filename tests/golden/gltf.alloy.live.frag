@@ -36,7 +36,7 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
 	return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0))), level).xyz;
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
 {
 	float x = dot(N, V);
@@ -158,7 +158,7 @@ vec3 fresnel_thin_film(float c, float thickness)
 	return clamp(0.5 * (mat3(2.3706744, -0.513885, 0.0052982, -0.9000405, 1.4253036, -0.0146949, -0.4706338, 0.0885814, 1.0093968) * sum), 0.0, 1.0);
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light2(vec2 roughness, vec3 base, vec3 rise, vec3 N, vec3 V, vec3 X, out vec3 albedo)
 {
 	bool isotropic = roughness.x == roughness.y;

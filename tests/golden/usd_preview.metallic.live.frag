@@ -29,7 +29,7 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
 	return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0))), level).xyz;
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
 {
 	float x = dot(N, V);
@@ -79,7 +79,7 @@ vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
 	return light * (kept / total);
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light2(vec3 base, vec3 rise, vec3 N, vec3 V, out vec3 albedo)
 {
 	float x = dot(N, V);
@@ -143,7 +143,7 @@ vec3 fresnel_conductor(float c, vec3 n, vec3 k)
 	return 0.5 * ((b - a) / (a + b)) * ((d - v) / (d + v) + 1.0);
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light3(vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V)
 {
 	float x = dot(N, V);
@@ -192,7 +192,7 @@ vec3 microfacet_light3(vec3 base, vec3 rise, vec3 bend, vec3 dip, vec3 N, vec3 V
 	return light * (mix(share / total, vec3(1), min(reach * total / count, 1.0)) / total);
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light4(vec3 N, vec3 V)
 {
 	float x = dot(N, V);

@@ -41,7 +41,7 @@ vec3 environment_lookup(sampler2D map, vec3 d, float level)
 	return textureLod(map, vec2(0.15915494 * atan(d.x, -d.z) + 0.5, 0.5 - 0.31830987 * asin(clamp(d.y, -1.0, 1.0))), level).xyz;
 }
 
-// The environment's light by n visible normals, which mirror it or refract it.
+// The environment's light in a GGX lobe, by samples of visible normals.
 vec3 microfacet_light(float roughness, float ior, vec3 N, vec3 V, out vec3 albedo)
 {
 	float x = dot(N, V);
