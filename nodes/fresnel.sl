@@ -81,7 +81,7 @@ inline color interference(float phase, color shift)
 
 // Reflectance of a thin film over an interface to n + ik (Belcour and Barla 2017, eq. 8). It is the Airy sum over the
 // orders of interference, of which three count. s- and p-polarised light differ by their admittances alone. thickness
-// is in nanometres.
+// is in nanometres; where it is 0 there is no film, and no work.
 color fresnel_thin_film(float c, color n, color k, float thickness, float film_ior)
 {
     float film = max(film_ior, 1.0);
@@ -94,7 +94,8 @@ color fresnel_thin_film(float c, color n, color k, float thickness, float film_i
     fresnel_admittance(inside, n / film, k / film, u, w);
     fresnel_admittance_p(n / film, k / film, u, w, up, wp);
     color sum = color(0.0);
-    for (int p = 0; p < 2; p++)
+    int polarisations = thickness > 0.0 ? 2 : 0;
+    for (int p = 0; p < polarisations; p++)
     {
         float y = p == 0 ? film * inside : inside / film;
         float r = (c - y) / (c + y);

@@ -293,24 +293,29 @@ struct Compilation {
         return true;
     }
 
-    // The node whose surface the output is, and its call; none where the output is anything else.
+    // The node whose surface the output is, and its call; none where the output is anything else. A material may stand
+    // between them, if it only hands the surface on.
     const graph::Node* surface(const ir::Function& entry, ir::ExprId& call) const {
         graph::Source source = graph.outputs[0].source;
         call = entry.results[0].value;
         while (source.kind == graph::Source::Kind::Node) {
             const graph::Node& node = graph.nodes[source.node.index];
-            const Name type = definitions.row(graph.kindOf(node).def).output;
-            while (entry[call].op == ir::Op::Retype) call = entry.operand(call, 0);
-            if (entry[call].op != ir::Op::Call) return nullptr;
-            if (type == document.known().surfaceshader) return &node;
-            auto inputs = graph.inputsOf(node);
-            auto below = std::find_if(inputs.begin(), inputs.end(),
-                                      [](const graph::Input& i) { return i.type == ir::Type::SurfaceShader; });
-            if (type != document.known().material || below == inputs.end()) return nullptr;
-            source = below->source;
-            call = entry.operand(call, static_cast<std::size_t>(below - inputs.begin()));
+            call = unwrapped(entry, call);
+            const ir::Function* function =
+                entry[call].op == ir::Op::Call ? module.find(Name(entry[call].payload)) : nullptr;
+            if (!function || function->results.size() != 1) return nullptr;
+            if (function->results[0].type == ir::Type::SurfaceShader) return &node;
+            const ir::Expr& handedOn = (*function)[unwrapped(*function, function->results[0].value)];
+            if (handedOn.op != ir::Op::Param) return nullptr;
+            source = graph.inputsOf(node)[handedOn.payload].source;
+            call = entry.operand(call, handedOn.payload);
         }
         return nullptr;
+    }
+
+    static ir::ExprId unwrapped(const ir::Function& f, ir::ExprId e) {
+        while (f[e].op == ir::Op::Retype) e = f.operand(e, 0);
+        return e;
     }
 
     // Whether a node of a library makes a surface of numbers, by a graph.

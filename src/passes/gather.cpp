@@ -69,6 +69,7 @@ struct Group {
     Name callee;
     std::vector<ExprId> calls;
     bool isApart = false;          // its calls stay as they are
+    bool isAlways = false;         // a loop around it makes its call in every turn, for the function skips itself
     std::uint32_t within = kNone;  // the group in whose loop its calls are made
 };
 
@@ -86,6 +87,19 @@ int workOf(const Module& module, const Function& f, int depth = 0) {
         work += callee ? workOf(module, *callee, depth + 1) : 1;
     }
     return work;
+}
+
+// Whether a function itself chooses to run its loops, or not.
+bool skipsItself(const Function& f) {
+    const std::vector<std::uint32_t> inside = loopsOf(f);
+    auto isNone = [&](ExprId e) { return f.isConstant(e) && f.constantWords(e)[0] == 0; };
+    for (std::size_t i = 0; i < f.exprs.size(); i++) {
+        if (f.exprs[i].op == Op::Lights) return false;
+        if (f.exprs[i].op != Op::Loop || inside[i] != kNoLoop) continue;
+        ExprId count = f.operandsOf(f.exprs[i])[0];
+        if (f[count].op != Op::Select || !(isNone(f.operand(count, 1)) || isNone(f.operand(count, 2)))) return false;
+    }
+    return true;
 }
 
 struct Gatherer {
@@ -201,12 +215,16 @@ struct Gatherer {
     // them.
     void findInner() {
         within.assign(n, kNone);
-        for (Group& g : groups) g.within = kNone;
+        for (Group& g : groups) {
+            g.within = kNone;
+            g.isAlways = false;
+        }
         for (Group& g : groups) {
             const std::uint32_t outer = ownerOf[g.calls[0].index];
             if (g.isApart || outer >= groups.size() || groups[outer].within != kNone || !servesOneEach(g, outer))
                 continue;
             g.within = outer;
+            g.isAlways = skipsItself(*module.find(g.callee));
             for (ExprId c : g.calls) within[c.index] = outer;
         }
         for (std::uint32_t i = 0; i < n; i++)
@@ -339,7 +357,8 @@ struct Gatherer {
         if (from[e].op == Op::Result || from[e].op == Op::Call) {
             ExprId call = from[e].op == Op::Result ? from.operand(e, 0) : e;
             const auto& literals = known(call);
-            return loopFor(call) != kNone && std::binary_search(literals.begin(), literals.end(), literal);
+            return loopFor(call) != kNone && !groups[loopFor(call)].isAlways &&
+                   std::binary_search(literals.begin(), literals.end(), literal);
         }
         if (!afterCall[e.index]) return isNull(e);
         auto o = from.operandsOf(e);
@@ -433,32 +452,65 @@ struct Gatherer {
     void makeInner(Turns& turns) {
         const std::uint32_t number = groupOf[turns.group.calls[0].index];
         for (const Group& g : groups)
-            if (g.within == number) innerLoop(turns, g);
+            if (g.within == number && g.isAlways)
+                everyTurn(turns, g);
+            else if (g.within == number)
+                innerLoop(turns, g);
         for (std::uint32_t i = 0; i < n; i++)
             if (within[i] == number && loopFor(ExprId(i)) == kNone) one(ExprId(i));
     }
 
-    // A loop of at most one turn, of which the call stays 0 unless the turn around it needs one.
-    void innerLoop(Turns& turns, const Group& g) {
-        const Group& outer = turns.group;
-        std::vector<ExprId> calls(outer.calls.size(), g.calls[0]);  // by turn
-        ExprId some = b.boolean(false), count = some, condition;
+    // The call of an inner group that serves a call of the outer one, or none.
+    ExprId servantOf(const Group& g, ExprId outer) const {
+        auto at =
+            std::find_if(g.calls.begin(), g.calls.end(), [&](ExprId c) { return userOf[c.index] == outer.index; });
+        return at == g.calls.end() ? ExprId() : *at;
+    }
+
+    // The call that an inner group makes in a turn of the loop around it; any where none is needed.
+    ExprId innerCall(Turns& turns, const Group& g) {
+        std::vector<ExprId> calls;  // by turn
+        for (ExprId outer : turns.group.calls) {
+            ExprId c = servantOf(g, outer);
+            calls.push_back(c ? c : g.calls[0]);
+        }
+        return call(calls, {turns, groupOf[g.calls[0].index], {}, {}});
+    }
+
+    // Whether a turn needs a call of an inner group.
+    ExprId isNeeded(Turns& turns, const Group& g) {
+        ExprId some = b.boolean(false), any = some, condition;
         bool isOneCondition = true;
-        for (std::size_t k = 0; k < outer.calls.size(); k++) {
-            auto at = std::find_if(g.calls.begin(), g.calls.end(),
-                                   [&](ExprId c) { return userOf[c.index] == outer.calls[k].index; });
-            if (at == g.calls.end()) continue;
-            calls[k] = *at;
-            ExprId now = conditionOf(*at, known(outer.calls[k]));
+        for (std::size_t k = 0; k < turns.group.calls.size(); k++) {
+            ExprId c = servantOf(g, turns.group.calls[k]);
+            if (!c) continue;
+            ExprId now = conditionOf(c, known(turns.group.calls[k]));
             ExprId is = isTurn(turns, k, k + 1);
             isOneCondition = isOneCondition && (!condition || condition == now);
             condition = now;
             some = b.op(Op::Or, {some, is});
-            count = b.op(Op::Or, {count, b.op(Op::And, {is, now})});
+            any = b.op(Op::Or, {any, b.op(Op::And, {is, now})});
         }
-        if (isOneCondition) count = b.op(Op::And, {condition, some});
+        return isOneCondition ? b.op(Op::And, {condition, some}) : any;
+    }
+
+    void everyTurn(Turns& turns, const Group& g) {
+        ExprId made = innerCall(turns, g);
+        for (ExprId c : g.calls) {
+            copy.set(c, made);
+            for (ExprId result : resultsIn(c))
+                if (from[result].op == Op::Result)
+                    copy.set(result, b.result(made, from[result].payload, from[result].type));
+            for (ExprId result : resultsIn(c))
+                if (from.hints[result.index]) b.hint(copy[result], from.hints[result.index]);
+        }
+    }
+
+    // A loop of at most one turn, of which the call stays 0 unless the turn around it needs one.
+    void innerLoop(Turns& turns, const Group& g) {
+        ExprId count = b.convert(isNeeded(turns, g), Type::Integer);
         std::uint32_t number = b.beginLoop();
-        ExprId made = call(calls, {turns, groupOf[g.calls[0].index], {}, {}});
+        ExprId made = innerCall(turns, g);
         std::map<std::uint32_t, std::uint32_t> slots;  // by result
         std::vector<ExprId> first, next;
         for (ExprId c : g.calls)
@@ -472,7 +524,7 @@ struct Gatherer {
                 first.push_back(b.null(type));
                 next.push_back(isPart ? b.result(made, k, type) : made);
             }
-        ExprId whole = b.endLoop(number, b.convert(count, Type::Integer), first, next);
+        ExprId whole = b.endLoop(number, count, first, next);
         for (ExprId c : g.calls) {
             for (ExprId result : resultsIn(c)) {
                 const std::uint32_t k = from[result].op == Op::Result ? from[result].payload : 0;

@@ -27,7 +27,8 @@ bool leadsTo(const ir::Module& module, const ir::Function& f, bool (*what)(const
 //         second = which == 1 ? x : second;
 //     }
 //
-// Calls of another function each of which serves one of these calls alone become a loop of at most one turn inside.
+// Calls of another function each of which serves one of these calls alone become a loop of at most one turn inside, or,
+// where that function chooses itself whether to run its loops, one call in every turn.
 //
 // A call that is needed under a condition, and whose function is called once, becomes a loop of at most one turn. What
 // is needed always, and calls that need each other's results, stay as they are. A select that gave 0 where its call is

@@ -120,13 +120,14 @@ vec3 fresnel_thin_film(float c, float thickness)
 	vec3 w = sqrt(max(0.5 * (m - t), 0.0));
 	vec3 up = 0.75111115 * u;
 	vec3 wp = 0.75111115 * w;
+	int polarisations = 0.0 < thickness ? 2 : 0;
 	float x2 = 1.3 * inside;
 	float x3 = inside / 1.3;
 	float x4 = -2.0 * inside;
 	vec3 u2 = u;
 	vec3 w2 = w;
 	vec3 sum = vec3(0);
-	for (int p = 0; p < 2; p++)
+	for (int p = 0; p < polarisations; p++)
 	{
 		float y = p == 0 ? x2 : x3;
 		float r = (c - y) / (c + y);
@@ -235,13 +236,14 @@ vec3 fresnel_thin_film2(float c, vec3 n, float thickness)
 	vec3 scale = 1.0 / max(re * re, 1e-12);
 	vec3 up = scale * (re * u);
 	vec3 wp = scale * (re * w);
+	int polarisations = 0.0 < thickness ? 2 : 0;
 	float x2 = 1.3 * inside;
 	float x3 = inside / 1.3;
 	float x4 = -2.0 * inside;
 	vec3 u2 = u;
 	vec3 w2 = w;
 	vec3 sum = vec3(0);
-	for (int p = 0; p < 2; p++)
+	for (int p = 0; p < polarisations; p++)
 	{
 		float y = p == 0 ? x2 : x3;
 		float r = (c - y) / (c + y);

@@ -96,13 +96,14 @@ vec3 fresnel_thin_film(float c, vec3 n, vec3 k, float thickness, float film_ior)
 	vec3 scale = 1.0 / max(re * re + im * im, 1e-12);
 	vec3 up = scale * (re * u + w * im);
 	vec3 wp = scale * (re * w - u * im);
+	int polarisations = 0.0 < thickness ? 2 : 0;
 	float x2 = film * inside;
 	float x3 = inside / film;
 	float x4 = -2.0 * inside;
 	vec3 u2 = u;
 	vec3 w2 = w;
 	vec3 sum = vec3(0);
-	for (int p = 0; p < 2; p++)
+	for (int p = 0; p < polarisations; p++)
 	{
 		float y = p == 0 ? x2 : x3;
 		float r = (c - y) / (c + y);
@@ -266,16 +267,10 @@ void main()
 	{
 		int k = has_specular && last < 1 ? 1 : has_transmitted && last < 2 ? 2 : 3;
 		int which = has_coat && last < 0 ? 0 : k;
-		bool is_specular = which == 1;
 		bool is_metal = which == 3;
-		int k2 = int(test && (is_specular || is_metal));
-		vec3 film = vec3(0);
-		for (int i2 = 0; i2 < k2; i2++)
-		{
-			vec3 n = is_metal ? metal_index_ior : vec3(tinted_shader_specular_IOR);
-			vec3 k3 = is_metal ? metal_index_extinction : vec3(0);
-			film = fresnel_thin_film(NV, n, k3, tinted_shader_thin_film_thickness, tinted_shader_thin_film_IOR);
-		}
+		vec3 n = is_metal ? metal_index_ior : vec3(tinted_shader_specular_IOR);
+		vec3 k2 = is_metal ? metal_index_extinction : vec3(0);
+		vec3 film = fresnel_thin_film(NV, n, k2, tinted_shader_thin_film_thickness, tinted_shader_thin_film_IOR);
 		bool is_transmitted = which == 2;
 		bool is_coat = which == 0;
 		float x3 = is_coat ? tinted_shader_coat_roughness : is_transmitted ? transmission_blurred : specular_blurred;
@@ -287,7 +282,8 @@ void main()
 		vec2 roughness = test2 ? p : vec2(alpha);
 		float ior = is_coat ? tinted_shader_coat_IOR : is_metal ? 1.0 : tinted_shader_specular_IOR;
 		vec3 v4 = is_transmitted ? vec3(1) : is_metal ? (test ? film : base) : vec3(0);
-		vec3 base2 = is_specular ? film : v4;
+		bool is_specular = which == 1;
+		vec3 base2 = is_specular ? (test ? film : vec3(0)) : v4;
 		vec3 rise4 = is_specular ? rise3 : is_transmitted ? vec3(0) : is_metal ? rise2 : vec3(1);
 		vec3 bend3 = is_metal ? bend2 : vec3(0);
 		vec3 dip3 = is_metal ? dip2 : vec3(0);

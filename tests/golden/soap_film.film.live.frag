@@ -39,13 +39,14 @@ vec3 fresnel_thin_film(float c, float thickness, float film_ior)
 	float scale = 1.0 / max(re * re, 1e-12);
 	vec3 up = scale * (re * u);
 	vec3 wp = scale * (re * w);
+	int polarisations = 0.0 < thickness ? 2 : 0;
 	float x3 = film * inside;
 	float x4 = inside / film;
 	float x5 = -2.0 * inside;
 	vec3 u2 = u;
 	vec3 w2 = w;
 	vec3 sum = vec3(0);
-	for (int p = 0; p < 2; p++)
+	for (int p = 0; p < polarisations; p++)
 	{
 		float y = p == 0 ? x3 : x4;
 		float r = (c - y) / (c + y);
