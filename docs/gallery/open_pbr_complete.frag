@@ -84,13 +84,14 @@ vec3 fresnel_thin_film(float c, vec3 n, float thickness, float film_ior)
 	vec3 scale = 1.0 / max(re * re, 1e-12);
 	vec3 up = scale * (re * u);
 	vec3 wp = scale * (re * w);
+	int polarisations = 0.0 < thickness ? 2 : 0;
 	float x2 = film * inside;
 	float x3 = inside / film;
 	float x4 = -2.0 * inside;
 	vec3 u2 = u;
 	vec3 w2 = w;
 	vec3 sum = vec3(0);
-	for (int p = 0; p < 2; p++)
+	for (int p = 0; p < polarisations; p++)
 	{
 		float y = p == 0 ? x2 : x3;
 		float r = (c - y) / (c + y);
@@ -277,15 +278,10 @@ void main()
 		int k2 = has_specular_plain && last < 3 ? 3 : has_metal_plain && last < 4 ? 4 : 5;
 		int k3 = has_specular_film && last < 1 ? 1 : has_transmitted && last < 2 ? 2 : k2;
 		int which = has_coat && last < 0 ? 0 : k3;
-		bool is_specular_film = which == 1;
 		bool is_metal_film = which == 5;
-		int k4 = int(test && (is_specular_film || is_metal_film));
-		vec3 film = vec3(0);
-		for (int i2 = 0; i2 < k4; i2++)
-		{
-			vec3 n = is_metal_film ? v3 : v4;
-			film = fresnel_thin_film(NV, n, film_nanometers, open_pbr_surface_surfaceshader_thin_film_ior);
-		}
+		vec3 n = is_metal_film ? v3 : v4;
+		vec3 film = fresnel_thin_film(NV, n, film_nanometers, open_pbr_surface_surfaceshader_thin_film_ior);
+		vec3 base2 = test ? film : vec3(0);
 		bool is_coat = which == 0;
 		float x6 = is_coat ? open_pbr_surface_surfaceshader_coat_roughness : specular_roughness_coated;
 		float x7 = is_coat ? open_pbr_surface_surfaceshader_coat_roughness_anisotropy : open_pbr_surface_surfaceshader_specular_roughness_anisotropy;
@@ -299,12 +295,13 @@ void main()
 		float ior = is_coat ? open_pbr_surface_surfaceshader_coat_ior : 4 <= which ? 1.0 : specular_index;
 		bool is_metal_plain = which == 4;
 		vec3 v5 = is_metal_plain ? metal_color : is_metal_film ? (test ? film : metal_color) : vec3(0);
-		vec3 base2 = is_specular_film ? film : is_transmitted ? vec3(1) : v5;
+		bool is_specular_film = which == 1;
+		vec3 base3 = is_specular_film ? base2 : is_transmitted ? vec3(1) : v5;
 		vec3 v6 = is_metal_plain ? rise : is_metal_film ? rise2 : vec3(1);
 		vec3 rise4 = is_specular_film ? rise3 : is_transmitted ? vec3(0) : v6;
 		vec3 dip3 = is_metal_plain ? dip : is_metal_film ? dip2 : vec3(0);
 		vec3 albedo;
-		vec3 radiance4 = microfacet_light(roughness, is_transmitted, clear, ior, base2, rise4, dip3, N, V, X, albedo);
+		vec3 radiance4 = microfacet_light(roughness, is_transmitted, clear, ior, base3, rise4, dip3, N, V, X, albedo);
 		bool is_specular_plain = which == 3;
 		last = which;
 		if (is_coat) coat2 = radiance4;

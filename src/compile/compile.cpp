@@ -216,7 +216,7 @@ struct Compilation {
     Name completeForm(doc::NodeDef def, Name function, std::span<const Name> connected) {
         std::string text(names.text(function));
         text += "@complete";
-        for (Name input : connected) text.append("_").append(names.text(input));
+        for (Name input : connected) text.append("+").append(names.text(input));  // no name has a plus
         Name name = names.intern(text);
         if (bodies.isPrecompiled(function)) return module.find(name) ? name : Name();
         return bodies.made().findOwn(name) || makeCompleteForm(def, name, connected) ? name : Name();
@@ -245,7 +245,9 @@ struct Compilation {
         if (!c.makeGraph() || !c.hasCompleteForm(c.graph.nodes.back())) return false;
         if (!c.lower() || !c.specialise() || !c.baked.empty() || !c.shade()) return false;
         c.finishPixel();
-        return told.all().empty() && c.takeInputs(name) && c.keepForm(name);
+        if (!told.all().empty() || !c.takeInputs(name)) return false;
+        c.keepForm(name);
+        return true;
     }
 
     // Makes parameters of the uniforms that stand for the inputs of the one node.
@@ -275,7 +277,7 @@ struct Compilation {
     }
 
     // Gives the functions that the form calls names of their own and keeps them all.
-    bool keepForm(Name form) {
+    void keepForm(Name form) {
         std::unordered_map<Name, Name> renamed;
         for (const auto& f : module.functions) {
             std::string_view own = names.text(f->name);
@@ -290,7 +292,6 @@ struct Compilation {
             f->isApart = f->name != form;
             bodies.keep(std::move(*f));
         }
-        return true;
     }
 
     // The node whose surface the output is, and its call; none where the output is anything else. A material may stand
