@@ -1,0 +1,80 @@
+// The command that draws a material.
+#include <bit>
+#include <filesystem>
+#include <utility>
+
+#include "apps/cli/session.h"
+#include "draw/loader.h"
+#include "oracle/loader.h"
+
+namespace shaderx::cli {
+
+// A file of a document: as it is, beside the document, or below a search path.
+static std::string resolved(const Options& options, const std::string& document, const std::string& file) {
+    namespace fs = std::filesystem;
+    std::error_code ignored;
+    if (file.empty() || fs::path(file).is_absolute()) return file;
+    fs::path beside = fs::path(document).parent_path() / file;
+    if (fs::exists(beside, ignored)) return beside.string();
+    for (const std::string& path : options.paths)
+        if (fs::exists(fs::path(path) / file, ignored)) return (fs::path(path) / file).string();
+    return beside.string();
+}
+
+// The default of a uniform, as numbers of any kind are set.
+static std::vector<float> numbersOf(const UniformBinding& u) {
+    std::vector<float> numbers;
+    for (std::uint32_t w : u.value)
+        numbers.push_back(ir::info(u.type).scalar == ir::Scalar::Float ? std::bit_cast<float>(w)
+                                                                       : static_cast<float>(static_cast<int>(w)));
+    return numbers;
+}
+
+static Result<Shader> shaderOf(Session& s, const std::string& file, const doc::Document& document,
+                               doc::ElementId element) {
+    Diagnostics diagnostics;
+    Result<Shader> shader = s.compiler.generate(document, element, s.how(), diagnostics);
+    s.reportElement(file, document, element, diagnostics);
+    return shader;
+}
+
+int draw(const Options& options) {
+    Session s{options};
+    if (!s.start()) return s.exitCode();
+    const std::string& file = options.files[0];
+    std::unique_ptr<doc::Document> document = s.read(file);
+    if (!document) return s.exitCode();
+    std::vector<doc::ElementId> elements = s.elements(file, *document);
+    if (elements.empty()) return s.exitCode();
+    Result<Shader> shader = shaderOf(s, file, *document, elements[0]);
+    if (!shader || !options.dump.empty()) return s.exitCode();
+
+    scene::Settings settings;
+    settings.size = options.size;
+    settings.samples = options.samples;
+    settings.environment = options.environment;
+    settings.exposure = options.exposure;
+    settings.output = options.picture;
+    for (const UniformBinding& u : shader->uniforms)
+        if (u.block >= 0) settings.defaults.push_back({u.name, numbersOf(u)});
+    for (const TextureBinding& t : shader->textures) {
+        scene::Texture texture{
+            t.uniform, resolved(options, file, t.file), t.uAddress, t.vAddress, t.filter, {0, 0, 0, 0}, t.path};
+        std::size_t n = t.defaultColor.size();
+        for (std::size_t i = 0; i < 4; i++)
+            texture.defaultColor[i] = n == 1 ? t.defaultColor[0] : i < n ? t.defaultColor[i] : i == 3 ? 1.0f : 0.0f;
+        settings.textures.push_back(std::move(texture));
+    }
+    Diagnostics diagnostics;
+    if (options.with == "interpreter") {
+        oracle::RenderJob job{std::move(settings), &shader->program->module, &shader->program->interface};
+        oracle::drawWithModule(job, diagnostics);
+    } else {
+        draw::Job job{std::move(settings), shader->vertex, shader->pixel};
+        draw::drawWithModule(job, diagnostics);
+    }
+    s.report(diagnostics);
+    return s.exitCode();
+}
+
+}  // namespace shaderx::cli

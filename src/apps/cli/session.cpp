@@ -1,0 +1,109 @@
+#include "apps/cli/session.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include <unistd.h>
+
+#include "apps/cli/files.h"
+#include "doc/file_resolver.h"
+
+namespace shaderx::cli {
+
+void PrintDump::dump(StageName, const std::string& text) { std::fputs(text.c_str(), stdout); }
+
+// A diagnostic, its kind in colour on a terminal.
+static void print(const Diagnostic& d) {
+    std::string text = format(d);
+    if (d.code == "limit" && d.hint.empty()) text += "  hint: --limit sets another one\n";
+    static const bool colour = isatty(2) && !std::getenv("NO_COLOR");
+    if (colour) {
+        const char* word = d.severity == Severity::Warning ? "warning:" : "error:";
+        if (std::size_t at = text.find(word); at != std::string::npos) {
+            text.insert(at + std::string_view(word).size(), "\033[0m");
+            text.insert(at, d.severity == Severity::Warning ? "\033[1;35m" : "\033[1;31m");
+        }
+    }
+    std::fputs(text.c_str(), stderr);
+}
+
+bool Session::report(const Diagnostics& diagnostics, const std::string& replay) {
+    for (const Diagnostic& d : diagnostics.all()) print(d);
+    if (diagnostics.hasInternal()) {
+        bug = true;
+        if (!replay.empty()) std::fprintf(stderr, "  replay: shaderx %s\n", replay.c_str());
+    }
+    failed = failed || diagnostics.hasErrors();
+    return !diagnostics.hasErrors();
+}
+
+bool Session::start() {
+    Diagnostics diagnostics;
+    if (std::string problem = limits.set(options.limits); !problem.empty()) {
+        std::fprintf(stderr, "shaderx: %s\n", problem.c_str());
+        badUsage = true;
+        return false;
+    }
+    for (const std::string& folder : options.libraries) {
+        std::vector<LibraryFile> files;
+        if (readLibrary(folder, files, diagnostics)) compiler.addLibrary(std::move(files), diagnostics);
+    }
+    dumps.active = !options.dump.empty();
+    if (dumps.active && !stageNamed(options.dump, dumps.stage)) {
+        std::fprintf(stderr, "shaderx: there is no stage '%s'\n", options.dump.c_str());
+        badUsage = true;
+        return false;
+    }
+    return report(diagnostics);
+}
+
+std::unique_ptr<doc::Document> Session::read(const std::string& file) {
+    Diagnostics diagnostics;
+    std::string text;
+    std::unique_ptr<doc::Document> document;
+    doc::FileResolver resolver(options.paths, limits.read.maxFileBytes);
+    if (readInput(file, text, diagnostics, limits.read.maxFileBytes))
+        document = compiler.read(file, std::move(text), resolver, diagnostics, limits.read);
+    report(diagnostics, "validate " + file);
+    return document;
+}
+
+std::vector<doc::ElementId> Session::elements(const std::string& file, const doc::Document& document) {
+    Diagnostics diagnostics;
+    std::vector<doc::ElementId> found;
+    if (options.element.empty()) {
+        found = compiler.renderableElements(document);
+        if (found.empty())
+            diagnostics.error("nothing-to-render", "the document has no material and no output").where.file = file;
+    } else if (doc::ElementId e = document.find(options.element)) {
+        found.push_back(e);
+    } else {
+        diagnostics.error("unknown-element", "there is no element '" + options.element + "'").where.file = file;
+    }
+    report(diagnostics);
+    return found;
+}
+
+GenerateOptions Session::how() {
+    GenerateOptions how;
+    interfaceNamed(options.interface, how.interface);
+    how.dumps = &dumps;
+    how.maxDepth = limits.depth;
+    how.maxExpressions = limits.expressions;
+    if (options.light != "fis")
+        how.environment = options.light == "none" ? EnvironmentLight::None : EnvironmentLight::Prefiltered;
+    how.flipV = options.flipV;
+    how.transparency = options.transparency;
+    how.blocks = options.blocks;
+    how.bindingBase = options.bindingBase;
+    how.unit = options.unit;
+    return how;
+}
+
+void Session::reportElement(const std::string& file, const doc::Document& document, doc::ElementId element,
+                            const Diagnostics& diagnostics) {
+    report(diagnostics,
+           "generate " + file + " --interface " + options.interface + " --element " + document.path(element));
+}
+
+}  // namespace shaderx::cli
