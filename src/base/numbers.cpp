@@ -88,6 +88,15 @@ std::optional<float> parseFloat(std::string_view text) {
     return value;
 }
 
+std::optional<double> parseDouble(std::string_view text) {
+    text = trim(text);
+    const char* end = text.data() + text.size();
+    double value = 0;
+    auto r = fast_float::from_chars(text.data(), end, value);
+    if (r.ec != std::errc() || r.ptr != end || !std::isfinite(value)) return {};
+    return value;
+}
+
 std::optional<int> parseInt(std::string_view text) {
     text = trim(text);
     if (!text.empty() && text[0] == '+') text.remove_prefix(1);

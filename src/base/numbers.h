@@ -16,6 +16,7 @@ char* writeFloat(char* to, float value);
 
 // Reads a whole text, blanks around it allowed; none if anything else is left. Values too large for a float are none.
 std::optional<float> parseFloat(std::string_view text);
+std::optional<double> parseDouble(std::string_view text);
 // Reads the number at the start of a text, not blanks before it, and returns what follows; null where there is none.
 const char* readFloat(const char* at, const char* end, float& value);
 std::optional<int> parseInt(std::string_view text);

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "base/numbers.h"
+#include "compile/color_conversion.h"
 #include "ir/builder.h"
+#include "passes/decode.h"
 #include "passes/specialise.h"
 
 namespace shaderx {
@@ -13,8 +15,13 @@ namespace shaderx {
 using namespace ir;
 
 NodeBodies::NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries,
-                       std::uint32_t maxDepth)
-    : names_(names), definitions_(definitions), libraries_(std::move(libraries)), maxDepth_(maxDepth), made_(names_) {
+                       const graph::SceneConventions& scene, std::uint32_t maxDepth)
+    : names_(names),
+      definitions_(definitions),
+      libraries_(std::move(libraries)),
+      scene_(scene),
+      maxDepth_(maxDepth),
+      made_(names_) {
     for (Library* l : libraries_) {
         documents_.push_back(&l->document());
         made_.sources.push_back(l);
@@ -30,26 +37,19 @@ const LeafInfo* NodeBodies::findLeaf(Name name) {
 Name NodeBodies::functionOf(doc::NodeDef def, Diagnostics& diagnostics) {
     Name name = nameOf(def);
     if (made_.find(name)) return name;
-    bool isTooDeep = underWay_.size() >= maxDepth_;
-    if (isTooDeep || !underWay_.insert(name).second) {
-        doc::ElementRef element = definitions_.element(def);
-        Diagnostic& e =
-            isTooDeep
-                ? diagnostics.error("limit", fmt::format("'{}' is used within more than {} nodes that are made "
-                                                         "of others",
-                                                         names_.text(name), maxDepth_))
-                : diagnostics.error("recursive-node",
-                                    fmt::format("the implementation of '{}' uses the node itself", names_.text(name)));
-        e.where = element.document->locate(element.id);
-        e.path = element.document->path(element.id);
-        return {};
-    }
     doc::Implementation implementation = definitions_.implementation(def);
     std::size_t errors = diagnostics.errorCount();
-    bool ok = false;
-    if (implementation.kind == doc::Implementation::Kind::Graph) ok = fromGraph(def, implementation, diagnostics);
-    if (implementation.kind == doc::Implementation::Kind::Source) ok = fromSource(def, implementation, diagnostics);
-    underWay_.erase(name);
+    bool ok = guarded(def, diagnostics, [&] {
+        switch (implementation.kind) {
+            case doc::Implementation::Kind::Graph:
+                return fromGraph(def, implementation, name, {}, diagnostics);
+            case doc::Implementation::Kind::Source:
+                return fromSource(def, implementation, diagnostics);
+            case doc::Implementation::Kind::None:
+                break;
+        }
+        return false;
+    });
     if (ok) passes::flatten(made_, *made_.findOwn(name));
     if (!ok && implementation && diagnostics.errorCount() == errors) {
         doc::ElementRef element = implementation.element;
@@ -61,11 +61,71 @@ Name NodeBodies::functionOf(doc::NodeDef def, Diagnostics& diagnostics) {
     return ok ? name : Name();
 }
 
-bool NodeBodies::fromGraph(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics) {
+// Makes a function of a nodedef unless that is under way already or too deep within others.
+bool NodeBodies::guarded(doc::NodeDef def, Diagnostics& diagnostics, const std::function<bool()>& make) {
+    const Name name = definitions_.row(def).name;
+    const bool isTooDeep = underWay_.size() >= maxDepth_;
+    if (!isTooDeep && underWay_.insert(name).second) {
+        const bool ok = make();
+        underWay_.erase(name);
+        return ok;
+    }
+    doc::ElementRef element = definitions_.element(def);
+    Diagnostic& e =
+        isTooDeep
+            ? diagnostics.error("limit", fmt::format("'{}' is used within more than {} nodes that are made of others",
+                                                     names_.text(name), maxDepth_))
+            : diagnostics.error("recursive-node",
+                                fmt::format("the implementation of '{}' uses the node itself", names_.text(name)));
+    e.where = element.document->locate(element.id);
+    e.path = element.document->path(element.id);
+    return false;
+}
+
+bool NodeBodies::fromGraph(doc::NodeDef def, const doc::Implementation& implementation, Name name,
+                           const graph::Instance& instance, Diagnostics& diagnostics) {
     graph::Graph g;
     const doc::Document& d = *implementation.graph.document;
     if (!graph::build(d, implementation.graph.id, definitions_, g, diagnostics)) return false;
-    return graph::lower(g, definitions_, *this, def, nameOf(def), {}, made_, diagnostics);
+    graph::LowerOptions how;
+    how.scene = scene_;
+    how.instance = instance;
+    return graph::lower(g, definitions_, *this, def, name, how, made_, diagnostics);
+}
+
+// A graph is lowered anew for its files. In any other function, reads are converted where one that gives a color reads
+// more than once; of one read, the caller may as well convert what it gives.
+Name NodeBodies::instanceOf(doc::NodeDef def, const graph::Instance& instance, bool& decodes,
+                            Diagnostics& diagnostics) {
+    decodes = true;
+    const doc::Implementation implementation = definitions_.implementation(def);
+    const Name plain = functionOf(def, diagnostics);
+    if (!plain) return {};
+    if (implementation.kind == doc::Implementation::Kind::Graph) {
+        std::string text(names_.text(plain));
+        for (const graph::FileSpace& f : instance.files)
+            text.append(f.isExplicit ? "@=" : "@").append(names_.text(f.name));
+        for (const auto& [token, value] : instance.tokens)
+            text.append("@[").append(names_.text(token)).append("]=").append(names_.text(value));
+        const Name name = names_.intern(text);
+        if (made_.findOwn(name)) return name;
+        const bool ok =
+            guarded(def, diagnostics, [&] { return fromGraph(def, implementation, name, instance, diagnostics); });
+        if (ok) passes::flatten(made_, *made_.findOwn(name));
+        return ok ? name : Name();
+    }
+    auto outputs = definitions_.outputs(def);
+    const bool givesColor = std::any_of(outputs.begin(), outputs.end(), [&](const doc::Port& p) {
+        const Type type = typeNamed(names_.text(p.type));
+        return type == Type::Color3 || type == Type::Color4;
+    });
+    if (!givesColor) return plain;
+    decodes = !passes::isPlainRead(*made_.find(plain));
+    if (!decodes) return plain;
+    std::vector<Name> conversions;
+    for (const graph::FileSpace& f : instance.files)
+        conversions.push_back(f.name ? toWorkingSpace(f.name, Type::Color4, diagnostics).function : Name());
+    return passes::decodeReads(made_, plain, conversions);
 }
 
 bool NodeBodies::fromSource(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics) {
@@ -74,6 +134,7 @@ bool NodeBodies::fromSource(doc::NodeDef def, const doc::Implementation& impleme
     auto text = [&](std::string_view attribute) { return element.attributeText(names_.intern(attribute)); };
     if (std::string_view name = text("leaf"); !name.empty()) return leaf(def, name);
     if (text("builder") == "attribute") return attribute(def);
+    if (text("builder") == "colortransform") return colorTransform(def, element, diagnostics);
     if (Name code = element.attribute(k.sourcecode)) return inlineText(def, element, names_.text(code), diagnostics);
     if (Name function = element.attribute(k.function)) return wrap(def, element, names_.text(function), diagnostics);
     Diagnostic& e = diagnostics.error("no-body", "the implementation has neither source code nor a function");
@@ -221,12 +282,44 @@ doc::NodeDef NodeBodies::nodeFor(std::string_view category, Type type) {
     return {};
 }
 
-doc::NodeDef NodeBodies::colorTransform(std::string_view from, std::string_view to, Type type) {
-    // Scene-referred names of the same primaries.
-    auto plain = [](std::string_view space) {
-        return space == "lin_rec709_scene" ? std::string_view("lin_rec709") : space;
-    };
-    return nodeFor(fmt::format("{}_to_{}", plain(from), plain(to)), type);
+graph::ColorConversion NodeBodies::toWorkingSpace(Name from, Type type, Diagnostics& diagnostics) {
+    const std::uint64_t key = std::uint64_t{from.index} << 8 | static_cast<std::uint64_t>(type);
+    auto [at, isNew] = conversions_.try_emplace(key);
+    if (!isNew) return at->second;
+    graph::ColorConversion made;
+    const std::string_view space = names_.text(from);
+    // Nodes of a library go before what is computed: X_to_Y.
+    if (doc::NodeDef def = nodeFor(fmt::format("{}_to_{}", space, scene_.colorspace), type)) {
+        made.function = functionOf(def, diagnostics);
+    } else {
+        const doc::ColorSpace *source = spaces_.find(space), *target = spaces_.find(scene_.colorspace);
+        made.isKnown = source && target;
+        if (made.isKnown) made.function = conversion(*source, *target, type, diagnostics);
+    }
+    return conversions_[key] = made;
+}
+
+Name NodeBodies::conversion(const doc::ColorSpace& from, const doc::ColorSpace& to, Type type,
+                            Diagnostics& diagnostics) {
+    const std::string text = conversionText(from, to, type == Type::Color4);
+    if (text.empty()) return {};
+    const std::string title = fmt::format("{}_to_{}", from.name, to.name);
+    if (doc::NodeDef def = nodeFor(title, type)) return functionOf(def, diagnostics);
+    const Name name = names_.intern(fmt::format("{}_{}", title, info(type).name));
+    const Param in{names_.intern("in"), type}, out{names_.intern("out"), type};
+    const bool ok = made_.find(name) || sl::compileInline(made_, name, std::span(&in, 1), std::span(&out, 1),
+                                                          {title, text}, known(), diagnostics);
+    return ok ? name : Name();
+}
+
+// A node that converts between two colour spaces.
+bool NodeBodies::colorTransform(doc::NodeDef def, doc::ElementRef element, Diagnostics& diagnostics) {
+    const doc::ColorSpace* from = spaces_.find(element.attributeText(names_.intern("from")));
+    const doc::ColorSpace* to = spaces_.find(element.attributeText(names_.intern("to")));
+    auto outputs = definitions_.outputs(def);
+    if (!from || !to || outputs.size() != 1) return false;
+    const std::string text = conversionText(*from, *to, typeNamed(names_.text(outputs[0].type)) == Type::Color4);
+    return inlineText(def, element, text.empty() ? "{{in}}" : text, diagnostics);
 }
 
 float NodeBodies::unitScale(std::string_view type, std::string_view unit) {

@@ -1,12 +1,15 @@
 // Functions that implement nodes, found in libraries or made on demand.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 #include "compile/library.h"
+#include "doc/color_spaces.h"
 #include "graph/lower.h"
 
 namespace shaderx {
@@ -16,15 +19,19 @@ namespace shaderx {
 // there already. What is made is kept for the next asking.
 class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
   public:
-    // `maxDepth`: graphs that implement nodes in graphs that implement nodes.
+    // `maxDepth`: graphs that implement nodes in graphs that implement nodes. The texts of `scene` must outlive this.
     NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries,
-               std::uint32_t maxDepth = 128);
+               const graph::SceneConventions& scene = {}, std::uint32_t maxDepth = 128);
 
     Name functionOf(doc::NodeDef def, Diagnostics& diagnostics) override;
     bool takeName(Name name) override { return uniformNames_.insert(name).second; }
     // Before another program.
     void forgetNames() { uniformNames_.clear(); }
-    doc::NodeDef colorTransform(std::string_view from, std::string_view to, ir::Type type) override;
+    Name instanceOf(doc::NodeDef def, const graph::Instance& instance, bool& decodes,
+                    Diagnostics& diagnostics) override;
+    graph::ColorConversion toWorkingSpace(Name from, ir::Type type, Diagnostics& diagnostics) override;
+    std::string_view nearestColorSpace(std::string_view name) override { return spaces_.nearest(name); }
+    doc::ColorSpaces& colorSpaces() { return spaces_; }
     float unitScale(std::string_view type, std::string_view unit) override;
     doc::ElementRef geometricProperty(Name name) override;
     doc::NodeDef nodeFor(std::string_view category, ir::Type type) override;
@@ -36,12 +43,16 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     void keep(ir::Function function) { made_.put(std::move(function)); }
     // Whether the function of a node came with a library that was precompiled.
     bool isPrecompiled(Name function) const { return !made_.findOwn(function); }
-    // Documents whose geometric properties count, beside those of the libraries.
-    void addDocument(const doc::Document& document) { documents_.push_back(&document); }
+    // A document whose geometric properties, units and colour spaces count, before those of the libraries.
+    void addDocument(const doc::Document& document) { documents_.insert(documents_.begin(), &document); }
 
   private:
     bool fromSource(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics);
-    bool fromGraph(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics);
+    bool fromGraph(doc::NodeDef def, const doc::Implementation& implementation, Name name,
+                   const graph::Instance& instance, Diagnostics& diagnostics);
+    bool guarded(doc::NodeDef def, Diagnostics& diagnostics, const std::function<bool()>& make);
+    bool colorTransform(doc::NodeDef def, doc::ElementRef element, Diagnostics& diagnostics);
+    Name conversion(const doc::ColorSpace& from, const doc::ColorSpace& to, ir::Type type, Diagnostics& diagnostics);
     bool inlineText(doc::NodeDef def, doc::ElementRef element, std::string_view text, Diagnostics& diagnostics);
     bool wrap(doc::NodeDef def, doc::ElementRef element, std::string_view function, Diagnostics& diagnostics);
     bool leaf(doc::NodeDef def, std::string_view name);
@@ -53,8 +64,11 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     NameTable& names_;
     const doc::Definitions& definitions_;
     std::vector<Library*> libraries_;
+    graph::SceneConventions scene_;
     std::uint32_t maxDepth_;
     std::vector<const doc::Document*> documents_;
+    doc::ColorSpaces spaces_{documents_};
+    std::unordered_map<std::uint64_t, graph::ColorConversion> conversions_;  // by name of the space and type
     ir::Module made_;
     std::vector<sl::Signature> known_;  // of all libraries, once asked for
     std::unordered_set<Name> uniformNames_;

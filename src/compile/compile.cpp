@@ -157,6 +157,13 @@ class Prefiltered final : public ir::FunctionSource {
 
 constexpr std::string_view kFormNode = "node";  // see Compilation::completeForm
 
+graph::SceneConventions sceneOf(const GenerateOptions& options) {
+    graph::SceneConventions scene;
+    scene.colorspace = options.colorspace;
+    scene.distanceUnit = options.unit;
+    return scene;
+}
+
 // One element on its way to a shader. The stages in the order in which they run.
 struct Compilation {
     const doc::Document& document;
@@ -427,14 +434,20 @@ struct Compilation {
         graph::LowerOptions how;
         how.interface = options.interface;
         how.authored = &authored;
+        how.scene = sceneOf(options);
         how.traces = traces;
-        if (options.unit != how.distanceUnit && !bodies.unitScale("distance", options.unit)) {
+        if (options.unit != graph::SceneConventions().distanceUnit && !bodies.unitScale("distance", options.unit)) {
             diagnostics.error("unknown-scene-unit", fmt::format("there is no unit of distance '{}'", options.unit));
             return false;
         }
-        how.distanceUnit = options.unit;
-        std::string_view space = document.attributeText(document.root(), document.known().colorspace);
-        if (!space.empty()) how.targetColorSpace = space;
+        if (options.colorspace != graph::SceneConventions().colorspace &&
+            !bodies.colorSpaces().find(options.colorspace)) {
+            const std::string_view near = bodies.colorSpaces().nearest(options.colorspace);
+            Diagnostic& e = diagnostics.error("unknown-working-space",
+                                              fmt::format("there is no colour space '{}'", options.colorspace));
+            if (!near.empty()) e.hint = fmt::format("did you mean '{}'?", near);
+            return false;
+        }
         bool ok = graph::lower(graph, definitions, bodies, {}, pixel, how, module, diagnostics);
         // Textures inside of nodes that graphs implement.
         const std::vector<ir::Uniform>& inside = bodies.made().uniforms;
@@ -563,7 +576,8 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
             made.clear();
         }
         if (!bodies)
-            bodies.emplace(state_->names, *definitions, state_->libraries(), options.maxDepth).addDocument(document);
+            bodies.emplace(state_->names, *definitions, state_->libraries(), sceneOf(options), options.maxDepth)
+                .addDocument(document);
         bodies->forgetNames();
         Compilation c{document,
                       element,

@@ -67,7 +67,8 @@ struct GenerateOptions {
     bool transparency = false;  // alpha from opacity; below u_alphaThreshold pixels are discarded
     bool blocks = false;        // uniforms stand in the blocks PrivateUniforms and PublicUniforms, laid out as std140
     int bindingBase = -1;       // of blocks and samplers, which the text numbers from here on; below 0 it numbers none
-    std::string_view unit = "meter";  // what one unit of distance is in the scene, as a <unitdef> calls it
+    std::string_view unit = "meter";             // what one unit of distance is in the scene, as a <unitdef> calls it
+    std::string_view colorspace = "lin_rec709";  // what shading works in, and the pixel stage gives: any space by name
     DumpSink* dumps = nullptr;
     // Limits; beyond them generating is an error.
     std::uint32_t maxDepth = 128;           // nodes and functions made of others, within each other

@@ -30,7 +30,10 @@ static ElementId lookUp(const Document& d, ElementId port, ElementId scope, Name
 
 static Connection toGraphOrNode(const Document& d, ElementId port, ElementId scope, Name attribute, Name name) {
     const WellKnown& k = d.known();
-    Connection c{Connection::Kind::Dangling, {}, d.attribute(port, k.output), attribute};
+    Connection c;
+    c.kind = Connection::Kind::Dangling;
+    c.output = d.attribute(port, k.output);
+    c.attribute = attribute;
     ElementId found = attribute == k.nodename ? d.childFrom(port, scope, name) : lookUp(d, port, scope, name);
     if (!found) return c;
     if (d[found].category == k.nodegraph) {
@@ -49,32 +52,58 @@ static Connection toGraphOrNode(const Document& d, ElementId port, ElementId sco
     return c;
 }
 
-Connection connection(const Document& d, ElementId port) {
-    const WellKnown& k = d.known();
+// What the attributes of a port connect it to.
+struct Wires {
     Name nodename, nodegraph, output, interfacename;
-    for (const Attribute& a : d.attributes(port)) {
-        if (a.name == k.nodename) nodename = a.value;
-        if (a.name == k.nodegraph) nodegraph = a.value;
-        if (a.name == k.output) output = a.value;
-        if (a.name == k.interfacename) interfacename = a.value;
-    }
-    if (!nodename && !nodegraph && !output && !interfacename) return {};
+};
 
+static Connection resolved(const Document& d, ElementId port, const Wires& wires) {
+    const WellKnown& k = d.known();
+    const auto [nodename, nodegraph, output, interfacename] = wires;
     // An output stands in its scope, an input in a node or graph that stands in its scope.
     ElementId owner = d[port].parent;
     ElementId scope = d[port].category == k.output || !owner || !d[owner].parent ? owner : d[owner].parent;
     if (!scope) return {};
     if (nodegraph) return toGraphOrNode(d, port, scope, k.nodegraph, nodegraph);
     if (nodename) return toGraphOrNode(d, port, scope, k.nodename, nodename);
+    Connection c;
     if (interfacename) {
-        Connection c{Connection::Kind::Interface, {}, {}, k.interfacename};
+        c.kind = Connection::Kind::Interface;
+        c.attribute = k.interfacename;
         c.target = d.child(scope, interfacename);
         if (c.target && d[c.target].category != k.input) c.target = {};
         return c;
     }
-    Connection c{Connection::Kind::Output, d.childFrom(port, scope, output), output, k.output};
+    c.kind = Connection::Kind::Output;
+    c.target = d.childFrom(port, scope, output);
+    c.output = output;
+    c.attribute = k.output;
     if (c.target && d[c.target].category != k.output) c.target = d.child(scope, k.output, output);
-    if (!c.target || c.target == port) c = {Connection::Kind::Dangling, {}, output, k.output};
+    if (!c.target || c.target == port) {
+        c.kind = Connection::Kind::Dangling;
+        c.target = {};
+    }
+    return c;
+}
+
+Connection connection(const Document& d, ElementId port) {
+    const WellKnown& k = d.known();
+    Wires wires;
+    Name value, colorspace, defaultgeomprop;
+    for (const Attribute& a : d.attributes(port)) {
+        if (a.name == k.nodename) wires.nodename = a.value;
+        if (a.name == k.nodegraph) wires.nodegraph = a.value;
+        if (a.name == k.output) wires.output = a.value;
+        if (a.name == k.interfacename) wires.interfacename = a.value;
+        if (a.name == k.value) value = a.value;
+        if (a.name == k.colorspace && !d.text(a.value).empty()) colorspace = a.value;
+        if (a.name == k.defaultgeomprop) defaultgeomprop = a.value;
+    }
+    const bool isWired = wires.nodename || wires.nodegraph || wires.output || wires.interfacename;
+    Connection c = isWired ? resolved(d, port, wires) : Connection();
+    c.value = value;
+    c.colorspace = colorspace;
+    c.defaultgeomprop = defaultgeomprop;
     return c;
 }
 

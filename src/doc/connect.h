@@ -18,6 +18,8 @@ struct Connection {
     ElementId target;
     Name output;     // as written
     Name attribute;  // what makes the connection: nodename, nodegraph, output or interfacename
+    // What the port says beside it, none where it does not.
+    Name value, colorspace, defaultgeomprop;
 };
 
 // Resolves the connection of a port. Names are looked up beside the node (for its inputs), beside the graph (for a

@@ -58,6 +58,8 @@ struct Builder {
         row.inherit = d.attribute(e, k.inherit);
         row.element = e;
         if (d.attribute(e, k.isdefaultversion) == k.trueValue) row.flags |= NodeDefRow::DefaultVersion;
+        for (ElementId c : children(d, e))
+            if (d[c].category == k.token) row.flags |= NodeDefRow::HasTokens;
         t.nodedefs.push_back(row);
     }
 

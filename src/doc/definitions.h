@@ -25,6 +25,7 @@ struct NodeDefRow {
         OpenInherit = 2,     // what it inherits is in another document
         InheritsItself = 4,  // at once, or by way of others: what it inherits is left out
         TooManyPorts = 8,    // more than kMostPorts, or too many in all: they are left out
+        HasTokens = 16,      // parts of file names that its nodes may replace
     };
     static constexpr std::size_t kMostPorts = 4096;
 

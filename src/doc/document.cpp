@@ -54,6 +54,7 @@ WellKnown::WellKnown(NameTable& names)
         "attributedef",  "propertyset", "property",       "propertyassign", "variantset",     "variant",
         "variantassign", "visibility",  "backdrop",       "xi:include",     "materialx",      "member",
         "unit",          "geomattr",    "opgraph",        "shader",         "material",       "shaderref",
+        "colorspacedef",
     };
     static_assert(std::size(kFormat) == std::tuple_size_v<decltype(format)>);
     std::transform(std::begin(kFormat), std::end(kFormat), format.begin(),

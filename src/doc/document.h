@@ -57,7 +57,7 @@ struct WellKnown {
     Name materialx, include, comment, textNode, cdata, pi, doctype, trueValue, out, defaultgeomprop, surfaceshader;
 
   private:
-    std::array<Name, 36> format;
+    std::array<Name, 37> format;
     std::uint64_t formatBits = 0;  // which handles modulo 64 occur in it: most others are told apart by these alone
 };
 

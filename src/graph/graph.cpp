@@ -103,8 +103,12 @@ struct GraphBuilder {
     bool run(ElementId element) {
         const doc::WellKnown& k = d.known();
         Name category = d[element].category;
+        const ElementId scope = category == k.nodegraph ? element : d[element].parent;
+        if (scope && d[scope].category == k.nodegraph) {
+            graph.interface = definitions.implementedBy(d, scope);
+            if (graph.interface || doc::isFunctional(d, scope)) functional = scope;
+        }
         if (category == k.nodegraph) {
-            if (doc::isFunctional(d, element) || definitions.implementedBy(d, element)) functional = element;
             for (ElementId c : doc::children(d, element))
                 if (d[c].category == k.output) addOutput(c);
             if (graph.outputs.empty()) error(element, "no-output", "the nodegraph has no output");
@@ -162,11 +166,15 @@ struct GraphBuilder {
             if (port == passed || (!circular.empty() && circular.count(port))) return circle(port);
             if ((step & (step - 1)) == 0) passed = port;
             Connection c = doc::connection(d, port);
+            if (c.colorspace) source.colorspace = c.colorspace;
             bool isLast = c.kind != Connection::Kind::Output && c.kind != Connection::Kind::Interface;
             if (isLast && longFrom) shortcuts[longFrom] = port;
             switch (c.kind) {
                 case Connection::Kind::None:
-                    if (d.attribute(port, d.known().value)) source = {Source::Kind::Value, {}, 0, port, {}};
+                    if (!c.value && !c.defaultgeomprop) return {};
+                    source.kind = c.defaultgeomprop ? Source::Kind::Geometric : Source::Kind::Value;
+                    source.element = port;
+                    source.input = c.defaultgeomprop;
                     return {};
                 case Connection::Kind::Dangling:
                     error(port, "dangling-connection",
@@ -180,8 +188,9 @@ struct GraphBuilder {
                     break;
                 case Connection::Kind::Interface: {
                     Name name = d.attribute(port, d.known().interfacename);
-                    if (functional && doc::scopeOf(d, d[port].parent) == functional) {
-                        source = {Source::Kind::Interface, {}, 0, {}, name};
+                    if (functional && scopeOf(port) == functional && (!c.target || isOpen(name))) {
+                        source.kind = Source::Kind::Interface;
+                        source.input = name;
                         return {};
                     }
                     if (!c.target) {
@@ -194,6 +203,13 @@ struct GraphBuilder {
                 }
             }
         }
+    }
+
+    bool isOpen(Name input) const { return graph.interface && definitions.input(graph.interface, input); }
+
+    // The nodegraph that a port of one of its nodes, or an output of its own, stands in.
+    ElementId scopeOf(ElementId port) const {
+        return d[port].category == d.known().output ? d[port].parent : doc::scopeOf(d, d[port].parent);
     }
 
     // Says once that the ports from this one on lead back to it.
@@ -224,7 +240,9 @@ struct GraphBuilder {
             if (!push(element, {})) return false;
             while (!stack.empty()) step();
         }
-        source = {Source::Kind::Node, NodeId(progress[element]), 0, {}, {}};
+        source = {};
+        source.kind = Source::Kind::Node;
+        source.node = NodeId(progress[element]);
         return true;
     }
 
@@ -387,7 +405,9 @@ struct GraphBuilder {
 
     // The topmost node's next input comes from a node.
     void connect(NodeId from, Name output, ElementId port) {
-        Source source{Source::Kind::Node, from, 0, {}, {}};
+        Source source;
+        source.kind = Source::Kind::Node;
+        source.node = from;
         pickOutput(port, output, source);
         next(source);
     }
@@ -426,6 +446,8 @@ std::string print(const Graph& graph, const doc::Definitions& definitions) {
                 return fmt::format("\"{}\"", d.attributeText(s.element, d.known().value));
             case Source::Kind::Interface:
                 return fmt::format("interface {}", d.text(s.input));
+            case Source::Kind::Geometric:
+                return fmt::format("geometric {}", d.text(s.input));
             case Source::Kind::Node: {
                 const Node& n = graph.nodes[s.node.index];
                 auto outputs = graph.kindOf(n).outputs;

@@ -22,12 +22,15 @@ struct Source {
         Value,      // written in the document, at `element`
         Node,       // the output `output` of `node`
         Interface,  // the input `input` of the nodedef that the graph implements
+        Geometric,  // the geometric property `input`, which a nodegraph's port stands for
     };
     Kind kind = Kind::Default;
     NodeId node;
     std::uint32_t output = 0;
-    doc::ElementId element;  // the <input> that holds the value
+    doc::ElementId element;  // the <input> that holds the value, or stands for the geometric property
     Name input;
+    // The colour space that ports between the value and the node say the value is in: the outermost that says one.
+    Name colorspace;
 };
 
 struct Input {
@@ -63,7 +66,8 @@ struct Graph {
     std::vector<Input> inputs;
     std::vector<Output> outputs;
     std::vector<doc::ElementId> visited;  // all nodes upstream, those that could not be built too
-    bool isExact = true;                  // no node gives an input that its nodedef does not have, or of another type
+    doc::NodeDef interface;  // of which Interface sources are inputs: that of the implementation that this is, or is in
+    bool isExact = true;     // no node gives an input that its nodedef does not have, or of another type
     const NodeKind& kindOf(const Node& n) const { return kinds[n.kind]; }
     std::span<const Input> inputsOf(const Node& n) const {
         return {inputs.data() + n.firstInput, kindOf(n).inputs.size()};
@@ -71,8 +75,9 @@ struct Graph {
 };
 
 // Builds the graph below an element: a node (all its outputs, or the one that is named), an <output>, or a nodegraph
-// (all its outputs; as the implementation of a nodedef, its interface inputs stay inputs). Everything upstream is
-// followed without recursion; a cycle is an error that tells its path; a node without a nodedef is an error.
+// (all its outputs). In the implementation of a nodedef, inputs of the nodedef that the nodegraph does not have itself
+// stay open (Interface). Everything upstream is followed without recursion; a cycle is an error that tells its path; a
+// node without a nodedef is an error.
 // White paper 2.4, steps 1 to 3.
 bool build(const doc::Document& document, doc::ElementId element, const doc::Definitions& definitions, Graph& graph,
            Diagnostics& diagnostics);

@@ -49,9 +49,15 @@ struct NamedBodies final : Bodies {
     Name functionOf(doc::NodeDef def, Diagnostics&) override { return definitions.row(def).name; }
     bool takeName(Name name) override { return taken.insert(name).second; }
     float unitScale(std::string_view, std::string_view) override { return 1; }
-    doc::NodeDef colorTransform(std::string_view from, std::string_view to, ir::Type type) override {
-        return nodeFor(std::string(from) + "_to_" + std::string(to), type);
+    Name instanceOf(doc::NodeDef def, const Instance&, bool& decodes, Diagnostics& diagnostics) override {
+        decodes = false;
+        return functionOf(def, diagnostics);
     }
+    ColorConversion toWorkingSpace(Name from, ir::Type type, Diagnostics&) override {
+        doc::NodeDef def = nodeFor(std::string(names.text(from)) + "_to_lin_rec709", type);
+        return def ? ColorConversion{definitions.row(def).name, true} : ColorConversion{{}, false};
+    }
+    std::string_view nearestColorSpace(std::string_view) override { return {}; }
     doc::ElementRef geometricProperty(Name name) override {
         return {&library, library.child(library.root(), names.intern("geompropdef"), name)};
     }

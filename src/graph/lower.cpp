@@ -22,8 +22,15 @@ struct Kind {
     };
     std::vector<KindInput> inputs;
     std::vector<Type> outputs;
-    bool isMet = false, isAsked = false;
+    bool isMet = false, isAsked = false, hasFiles = false;
     Name function;  // once asked for; none where nothing implements it
+};
+
+// The colour space that is said for a value, and by which element.
+struct SaidSpace {
+    Name name;  // none where nothing says one
+    doc::ElementId by;
+    bool isExplicit = false;  // said by a port
 };
 
 struct Lowerer {
@@ -41,15 +48,19 @@ struct Lowerer {
     std::vector<std::uint32_t> firstResult{};  // by node
     std::vector<Kind> kinds = std::vector<Kind>(graph.kinds.size());
     std::vector<ExprId> operands{};  // of the node at hand
-    std::unordered_map<Name, ExprId> geometric{};
+    std::unordered_map<Name, ExprId> geometric{}, openInputs{};
     std::unordered_map<doc::ElementId, Name> uniformOf{};
-    Name colorspace = d.names().intern("colorspace"), fileprefix = d.names().intern("fileprefix");
+    Name fileprefix = d.names().intern("fileprefix"), working = d.names().intern(options.scene.colorspace);
     // Inputs of nodes that read images.
     Name uaddressmode = d.names().intern("uaddressmode"), vaddressmode = d.names().intern("vaddressmode");
     Name filtertype = d.names().intern("filtertype"), defaultColor = d.names().intern("default");
     Name uniformWord = d.names().intern("uniform"), unit = d.names().intern("unit");
-    std::unordered_set<Name> failed{};  // nodedefs without a function
-    std::string wanted{};               // room to make a uniform's name in
+    std::vector<FileSpace> files{};             // of the node at hand, by input
+    std::unordered_set<Name> failed{};          // nodedefs without a function
+    std::unordered_set<doc::ElementId> told{};  // what says an unknown colour space
+    doc::ElementId scope{};                     // the nodegraph or document whose colour space was asked for last
+    SaidSpace scopeSays{};
+    std::string wanted{};  // room to make a uniform's name in
     bool ok = true;
 
     bool run(Name name) {
@@ -89,7 +100,6 @@ struct Lowerer {
         firstResult.push_back(static_cast<std::uint32_t>(results.size()));
         operands.clear();
         meet(n);
-        Name fileSpace, fileUnit;
         const Input* file = nullptr;
         for (const Input& input : graph.inputsOf(n)) {
             ExprId value = valueOf(input.source, input.type, &input, &n);
@@ -97,27 +107,25 @@ struct Lowerer {
             if (!value && input.source.kind == Source::Kind::Interface)
                 noParameter(input.source.input, portOf(input, n));
             if (!value) value = b.null(input.type);
-            if (input.type == Type::Texture2D && input.source.kind == Source::Kind::Value) {
-                file = &input;
-                fileSpace = d.inherited(input.source.element, colorspace);
-                fileUnit = d.attribute(input.source.element, unit);
-            }
+            if (input.type == Type::Texture2D && input.source.kind == Source::Kind::Value) file = &input;
             operands.push_back(value);
         }
         const Kind& kind = known(n);
-        if (!kind.function) {
+        FileSpace toDecode;
+        Name function = kind.function ? instance(n, kind, toDecode) : Name();
+        if (!function) {
             ok = false;
             for (Type type : kind.outputs) results.push_back(b.null(type));
             return;
         }
         bool isSingle = kind.outputs.size() == 1;
-        ExprId made = b.call(kind.function, isSingle ? kind.outputs[0] : Type::Tuple, operands);
-        Name nodeName = d[n.element].name;
+        ExprId made = b.call(function, isSingle ? kind.outputs[0] : Type::Tuple, operands);
+        Name nodeName = d[n.element].name, fileUnit = file ? d.attribute(file->source.element, unit) : Name();
         for (std::uint32_t k = 0; k < kind.outputs.size(); k++) {
             Type type = kind.outputs[k];
             ExprId value = isSingle ? made : b.result(made, k, type);
-            if (fileSpace && (type == Type::Color3 || type == Type::Color4))
-                value = transformed(value, fileSpace, n.element);
+            if (toDecode.name && (type == Type::Color3 || type == Type::Color4))
+                value = converted(value, {toDecode.name, n.element});
             if (fileUnit) value = inUnits(value, fileUnit, file->source.element, file, &n);
             Name output = graph.kindOf(n).outputs[k].name;
             b.hint(value,
@@ -134,6 +142,85 @@ struct Lowerer {
         for (const doc::Port& o : of.outputs) kind.outputs.push_back(typeNamed(d.text(o.type)));
         for (const doc::Port& i : of.inputs)
             kind.inputs.push_back({definitions.element(of.def, i).attribute(d.known().defaultgeomprop), {}});
+        for (const Input& i : graph.inputsOf(n)) kind.hasFiles = kind.hasFiles || i.type == Type::Texture2D;
+        kind.hasFiles = kind.hasFiles || (definitions.row(of.def).flags & doc::NodeDefRow::HasTokens);
+    }
+
+    // The function of a node: that of its kind, unless its files are in other spaces than the scene's or their names
+    // have tokens. Where that function gives colours as the file has them, `toDecode` is their space.
+    Name instance(const Node& n, const Kind& kind, FileSpace& toDecode) {
+        if (!kind.hasFiles) return kind.function;
+        bool isOther = false;
+        files.clear();
+        for (const Input& input : graph.inputsOf(n)) {
+            files.push_back(input.type == Type::Texture2D ? fileSpace(input, n) : FileSpace());
+            if (files.back().name == working && !files.back().isExplicit) files.back() = {};
+            if (files.back().name && !isKnownSpace(files.back().name, input, n)) files.back() = {};
+            isOther = isOther || files.back().name;
+            if (files.back().name) toDecode = files.back();
+        }
+        const std::vector<std::pair<Name, Name>> tokens = tokensOf(n);
+        if (!isOther && tokens.empty()) return kind.function;
+        bool decodes = false;
+        Name function = bodies.instanceOf(graph.kindOf(n).def, {files, tokens}, decodes, diagnostics);
+        if (decodes) toDecode = {};
+        return function;
+    }
+
+    // The space of a node's file. What a port says of it, the outermost first, goes before the scope that it is
+    // written in.
+    FileSpace fileSpace(const Input& input, const Node& owner) {
+        const Source& s = input.source;
+        switch (s.kind) {
+            case Source::Kind::Value: {
+                const SaidSpace said = spaceOf(s);
+                return {said.name, said.isExplicit};
+            }
+            case Source::Kind::Interface: {
+                const FileSpace outer = fileOfInterface(s.input);
+                return outer.isExplicit || !s.colorspace ? outer : FileSpace{s.colorspace, true};
+            }
+            case Source::Kind::Default: {
+                const doc::ElementRef port = definitions.element(graph.kindOf(owner).def, *input.port);
+                const Name own = port.attribute(d.known().colorspace);
+                return {own ? own : port.document->inherited(port.id, d.known().colorspace), bool(own)};
+            }
+            case Source::Kind::Node:
+            case Source::Kind::Geometric:
+                break;
+        }
+        return {};
+    }
+
+    FileSpace fileOfInterface(Name name) const {
+        if (!implemented) return {};
+        auto ports = definitions.inputs(implemented);
+        for (std::size_t i = 0; i < ports.size() && i < options.instance.files.size(); i++)
+            if (ports[i].name == name) return options.instance.files[i];
+        return {};
+    }
+
+    bool isKnownSpace(Name space, const Input& input, const Node& owner) {
+        if (bodies.toWorkingSpace(space, Type::Color3, diagnostics).isKnown) return true;
+        const bool isHere = input.source.kind == Source::Kind::Value;
+        unknownSpace(isHere ? spaceOf(input.source) : SaidSpace{space, portOf(input, owner)});
+        return false;
+    }
+
+    // What the tokens of a node's nodedef stand for: what the node says, else the nodedef.
+    std::vector<std::pair<Name, Name>> tokensOf(const Node& n) const {
+        std::vector<std::pair<Name, Name>> all;
+        const doc::NodeDef def = graph.kindOf(n).def;
+        if (!(definitions.row(def).flags & doc::NodeDefRow::HasTokens)) return all;
+        const doc::ElementRef nodedef = definitions.element(def);
+        const doc::WellKnown& k = d.known();
+        for (doc::ElementId e : doc::children(*nodedef.document, nodedef.id)) {
+            const Name name = (*nodedef.document)[e].name;
+            if ((*nodedef.document)[e].category != k.token || !name) continue;
+            const doc::ElementId own = d.child(n.element, k.token, name);
+            all.emplace_back(name, own ? d.attribute(own, k.value) : nodedef.document->attribute(e, k.value));
+        }
+        return all;
     }
 
     // The kind of a node; asks for its function at the first of that kind.
@@ -159,10 +246,13 @@ struct Lowerer {
             case Source::Kind::Node:
                 return results[firstResult[s.node.index] + s.output];
             case Source::Kind::Interface:
-                return parameter(s.input);
+                return implemented ? parameter(s.input) : openInput(s.input);
+            case Source::Kind::Geometric:
+                if (d.attribute(s.element, d.known().value)) ignoredValue(s.element, s.input);
+                return geometricValue(s.input, s.element);
             case Source::Kind::Value:
                 if (input && isGeometric(s, *input, *owner)) return defaultOf(*input, *owner);
-                return written(s.element, type, input, owner);
+                return written(s, type, input, owner);
             case Source::Kind::Default:
                 return input ? defaultOf(*input, *owner) : ExprId();
         }
@@ -174,13 +264,17 @@ struct Lowerer {
     bool isGeometric(const Source& s, const Input& input, const Node& owner) {
         Name property = kindOf(input, owner).property;
         if (!property || d[s.element].parent != owner.element) return false;
+        ignoredValue(s.element, property);
+        return true;
+    }
+
+    void ignoredValue(doc::ElementId port, Name property) {
         Diagnostic& w = diagnostics.warning(
             "ignored-value",
             fmt::format("the value of '{}' is not read: unless connected, it is the geometric property {}",
-                        d.text(d[s.element].name), d.text(property)));
-        w.where = d.locate(s.element, d.known().value);
-        w.path = d.path(s.element);
-        return true;
+                        d.text(d[port].name), d.text(property)));
+        w.where = d.locate(port, d.known().value);
+        w.path = d.path(port);
     }
 
     Kind::KindInput& kindOf(const Input& input, const Node& owner) {
@@ -212,13 +306,48 @@ struct Lowerer {
         return {};
     }
 
+    // An input of the nodedef that the graph implements, where what is compiled is a part of that graph and nobody
+    // gives it: its default value.
+    ExprId openInput(Name name) {
+        if (auto it = openInputs.find(name); it != openInputs.end()) return it->second;
+        const doc::Port* port = graph.interface ? definitions.input(graph.interface, name) : nullptr;
+        if (!port) return {};
+        const doc::ElementRef element = definitions.element(graph.interface, *port);
+        const Type type = typeNamed(d.text(port->type));
+        const std::string_view value = element.attributeText(d.known().value);
+        ExprId made;
+        if (Name property = element.attribute(d.known().defaultgeomprop))
+            made = geometricValue(property, graph.outputs[0].element);
+        else if (type == Type::Texture2D || (options.interface != Interface::Baked && componentCount(type)))
+            made = openUniform(*port, element, type, value);
+        else
+            made = constantOf(b, type, value);
+        return openInputs[name] = made;
+    }
+
+    ExprId openUniform(const doc::Port& port, doc::ElementRef element, Type type, std::string_view value) {
+        const std::string_view name = d.text(port.name);
+        const std::string owner(d.text(definitions.row(graph.interface).name));
+        Uniform u;
+        u.name = freeName(fmt::format("{}_{}", owner, name));
+        u.type = type;
+        u.path = fmt::format("{}/{}", owner, name);
+        if (type == Type::Texture2D)
+            u.file = fileOf(element, value);
+        else
+            u.values = wordsOf(type, value);
+        module.uniforms.push_back(u);
+        return b.uniform(u.name, type);
+    }
+
     void noParameter(Name name, doc::ElementId port) {
         error(port, "dangling-interfacename",
               fmt::format("'{}' has no input '{}'", d.text(definitions.row(implemented).name), d.text(name)));
     }
 
-    ExprId written(doc::ElementId element, Type type, const Input* input, const Node* owner) {
-        if (type == Type::Texture2D) return texture(element, input, owner);
+    ExprId written(const Source& s, Type type, const Input* input, const Node* owner) {
+        const doc::ElementId element = s.element;
+        if (type == Type::Texture2D) return texture(s, input, owner);
         const Name given = d.attribute(element, d.known().value);
         const std::string_view text = d.text(given);
         Words words;
@@ -237,7 +366,7 @@ struct Lowerer {
         }
         if (options.interface != Interface::Baked) record(live, element, input, owner);
         if (type == Type::Color3 || type == Type::Color4)
-            if (Name space = d.attribute(element, colorspace)) value = transformed(value, space, element);
+            if (const SaidSpace said = spaceOf(s); said.name && said.name != working) value = converted(value, said);
         if (Name from = d.attribute(element, unit)) value = inUnits(value, from, element, input, owner);
         return value;
     }
@@ -289,18 +418,18 @@ struct Lowerer {
         return u.name;
     }
 
-    ExprId texture(doc::ElementId element, const Input* input, const Node* reader) {
+    ExprId texture(const Source& s, const Input* input, const Node* reader) {
+        const doc::ElementId element = s.element;
         auto it = uniformOf.find(element);
-        if (it == uniformOf.end()) it = uniformOf.emplace(element, newTexture(element, reader)).first;
+        if (it == uniformOf.end()) it = uniformOf.emplace(element, newTexture(s, reader)).first;
         record(it->second, element, input, reader);
         return b.uniform(it->second, Type::Texture2D);
     }
 
-    Name newTexture(doc::ElementId element, const Node* reader) {
-        Uniform& u = addUniform(element, Type::Texture2D);
-        std::string_view prefix = d.text(d.inherited(element, fileprefix));
-        u.file = std::string(prefix) + std::string(d.attributeText(element, d.known().value));
-        u.colorspace = d.text(d.inherited(element, colorspace));
+    Name newTexture(const Source& s, const Node* reader) {
+        Uniform& u = addUniform(s.element, Type::Texture2D);
+        u.file = fileOf({&d, s.element}, withTokens(s.element, d.attributeText(s.element, d.known().value)));
+        u.colorspace = d.text(spaceOf(s).name);
         if (reader) readHints(u, *reader);
         return u.name;
     }
@@ -324,23 +453,77 @@ struct Lowerer {
         }
     }
 
-    ExprId transformed(ExprId value, Name space, doc::ElementId at) {
-        std::string_view from = d.text(space), to = options.targetColorSpace;
-        if (from.empty() || from == to || from == "none" || from == "raw" || from == "data") return value;
-        doc::NodeDef def = bodies.colorTransform(from, to, b.type(value));
-        if (!def) {
-            Diagnostic& w =
-                diagnostics.warning("unknown-colorspace", fmt::format("no transform from colour space '{}' to '{}'; "
-                                                                      "the value is used as it is",
-                                                                      from, to));
-            w.where = d.locate(at);
-            w.path = d.path(at);
-            return value;
+    // A file as it is to be found from the document: with the prefix of where it is written.
+    std::string fileOf(doc::ElementRef element, std::string_view file) const {
+        if (file.empty()) return {};
+        return std::string(d.text(element.document->inherited(element.id, fileprefix))).append(file);
+    }
+
+    // A file name whose [tokens] are replaced by what they stand for: in the element's own node or a graph around it,
+    // in the node that the graph implements, in the nodedef of that.
+    std::string withTokens(doc::ElementId element, std::string_view file) const {
+        std::string out;
+        for (;;) {
+            const std::size_t open = file.find('['), close = file.find(']', open);
+            if (close == std::string_view::npos) return out.append(file);
+            const std::string_view word = file.substr(open + 1, close - open - 1);
+            const Name name = d.names().find(word);
+            const Name value = name ? tokenValue(element, name) : Name();
+            out.append(file.substr(0, open));
+            out.append(value ? d.text(value) : file.substr(open, close + 1 - open));
+            file.remove_prefix(close + 1);
         }
-        Name function = bodies.functionOf(def, diagnostics);
-        if (!function) return value;
-        Type type = b.type(value);
-        return b.call(function, type, std::span<const ExprId>(&value, 1));
+    }
+
+    Name tokenValue(doc::ElementId element, Name name) const {
+        const doc::WellKnown& k = d.known();
+        for (doc::ElementId at = d[element].parent; at && at != d.root(); at = d[at].parent)
+            if (doc::ElementId own = d.child(at, k.token, name)) return d.attribute(own, k.value);
+        for (const auto& [token, value] : options.instance.tokens)
+            if (token == name) return value;
+        if (!graph.interface) return {};
+        const doc::ElementRef nodedef = definitions.element(graph.interface);
+        const doc::ElementId own = nodedef.document->child(nodedef.id, k.token, name);
+        return own ? nodedef.document->attribute(own, k.value) : Name();
+    }
+
+    // The colour space of a value: what a port says, the outermost first, else the node, nodegraph or document that the
+    // value stands in.
+    SaidSpace spaceOf(const Source& s) {
+        if (s.colorspace) return {s.colorspace, s.element, true};
+        const Name word = d.known().colorspace;
+        const doc::ElementId node = d[s.element].parent;
+        if (const Name own = d.attribute(node, word); own && !d.text(own).empty()) return {own, node};
+        if (d[node].parent != scope || !scope) {
+            scope = d[node].parent;
+            scopeSays = {};
+            for (doc::ElementId at = scope; at && !scopeSays.name; at = d[at].parent)
+                if (const Name own = d.attribute(at, word); own && !d.text(own).empty()) scopeSays = {own, at};
+        }
+        return scopeSays;
+    }
+
+    // A colour of a space in the working space.
+    ExprId converted(ExprId value, const SaidSpace& from) {
+        if (from.name == working) return value;
+        const Type type = b.type(value);
+        const ColorConversion conversion = bodies.toWorkingSpace(from.name, type, diagnostics);
+        if (!conversion.isKnown) unknownSpace(from);
+        if (!conversion.function) return value;
+        return b.call(conversion.function, type, std::span<const ExprId>(&value, 1));
+    }
+
+    // Said once for each element that says the space.
+    void unknownSpace(const SaidSpace& said) {
+        if (!told.insert(said.by).second) return;
+        const std::string_view name = d.text(said.name);
+        Diagnostic& w = diagnostics.warning(
+            "unknown-colorspace", fmt::format("there is no colour space '{}'; its colours are taken to be in '{}'",
+                                              name, options.scene.colorspace));
+        if (std::string_view near = bodies.nearestColorSpace(name); !near.empty())
+            w.hint = fmt::format("did you mean '{}'?", near);
+        w.where = d.locate(said.by, d.known().colorspace);
+        w.path = d.path(said.by);
     }
 
     // A value that the document gives in a unit, in that of the scene.
@@ -349,7 +532,9 @@ struct Lowerer {
         std::string_view type = d.attributeText(at, word), from = d.text(given);
         if (type.empty() && input)
             type = definitions.element(graph.kindOf(*owner).def, *input->port).attributeText(word);
-        std::string_view to = type == "distance" ? options.distanceUnit : type == "angle" ? options.angleUnit : from;
+        std::string_view to = type == "distance" ? options.scene.distanceUnit
+                              : type == "angle"  ? options.scene.angleUnit
+                                                 : from;
         if (from == to || info(b.type(value)).scalar != Scalar::Float) return value;
         float scale = bodies.unitScale(type, from), target = bodies.unitScale(type, to);
         if (scale > 0 && target > 0) return b.op(Op::Mul, {value, b.number(scale / target)});
@@ -373,23 +558,35 @@ struct Lowerer {
         std::string_view value = element.attributeText(d.known().value);
         bool isComplete = options.interface == Interface::Complete && !implemented;
         if (input.type == Type::Texture2D || (isComplete && componentCount(input.type)))
-            return unwritten(input, owner, value);
-        return usual = constantOf(b, input.type, value);
+            return inScene(unwritten(input, owner, element, value), element);
+        return usual = inScene(constantOf(b, input.type, value), element);
+    }
+
+    // A colour that a nodedef gives, in the working space.
+    ExprId inScene(ExprId value, doc::ElementRef port) {
+        const Type type = value ? b.type(value) : Type::Void;
+        if (type != Type::Color3 && type != Type::Color4) return value;
+        const Name space = port.document->inherited(port.id, d.known().colorspace);
+        if (!space || space == working) return value;
+        const ColorConversion conversion = bodies.toWorkingSpace(space, type, diagnostics);
+        return conversion.function ? b.call(conversion.function, type, std::span<const ExprId>(&value, 1)) : value;
     }
 
     // A uniform for an input that the document does not write: the host may set it.
-    ExprId unwritten(const Input& input, const Node& owner, std::string_view value) {
+    ExprId unwritten(const Input& input, const Node& owner, doc::ElementRef port, std::string_view value) {
         std::string_view name = d.text(input.port->name);
         Uniform u;
         u.name = freeName(fmt::format("{}_{}", d.text(d[owner.element].name), name));
         u.type = input.type;
         u.path = fmt::format("{}/{}", d.path(owner.element), name);
-        if (u.type == Type::Texture2D)
+        if (u.type == Type::Texture2D) {
+            u.file = fileOf(port, value);
             readHints(u, owner);
-        else if (value.empty())
+        } else if (value.empty()) {
             u.values.assign(static_cast<std::size_t>(componentCount(u.type)), 0);
-        else
+        } else {
             u.values = wordsOf(u.type, value);
+        }
         module.uniforms.push_back(u);
         record(u.name, {}, &input, &owner);
         return b.uniform(u.name, u.type);

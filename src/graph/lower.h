@@ -15,16 +15,47 @@ enum class Interface : std::uint8_t {
     Complete,  // every input of every node, authored or not
 };
 
+// What a scene's numbers mean.
+struct SceneConventions {
+    std::string_view colorspace = "lin_rec709";                     // the working space: what shading computes in
+    std::string_view distanceUnit = "meter", angleUnit = "degree";  // what functions get
+};
+
+// The colour space of a file that a node is given.
+struct FileSpace {
+    Name name;  // none where nothing says it
+    bool isExplicit =
+        false;  // said by a port; else of the scope that the file is written in, where a port within may differ
+};
+
+// How an instance of a node differs from others of its nodedef, before it is a function: by what is no value of the
+// program. For each input the space of its file, as far as any has one; and what tokens in file names stand for.
+struct Instance {
+    std::span<const FileSpace> files;
+    std::span<const std::pair<Name, Name>> tokens;
+};
+
+// A conversion between colour spaces.
+struct ColorConversion {
+    Name function;        // of a color3 or color4; none where there is nothing to do
+    bool isKnown = true;  // are both spaces known?
+};
+
 // Finds the function that implements a node. Its parameters are the nodedef's inputs in order, its results the outputs.
 class Bodies {
   public:
     virtual ~Bodies() = default;
     // None after reporting why there is none. The module finds the function by that name.
     virtual Name functionOf(doc::NodeDef def, Diagnostics& diagnostics) = 0;
+    // The function of an instance that has files. What it reads of a file is already in the working space of the scene,
+    // where `decodes` says so; else the caller has to convert the colours that it gives.
+    virtual Name instanceOf(doc::NodeDef def, const Instance& instance, bool& decodes, Diagnostics& diagnostics) = 0;
     // Takes the name of a uniform for the whole program; false if it is taken.
     virtual bool takeName(Name name) = 0;
-    // The node of a colour transform such as srgb_texture to lin_rec709, or none.
-    virtual doc::NodeDef colorTransform(std::string_view from, std::string_view to, ir::Type type) = 0;
+    // From a colour space to the working space of the scene.
+    virtual ColorConversion toWorkingSpace(Name from, ir::Type type, Diagnostics& diagnostics) = 0;
+    // A known space that an unknown name may mean, or none.
+    virtual std::string_view nearestColorSpace(std::string_view name) = 0;
     // How many of a type's base units a unit is (of distances: metres), 0 where it is unknown.
     virtual float unitScale(std::string_view type, std::string_view unit) = 0;
     // The node and its input values that a geometric property means (Nworld: <normal> with space = world), as the
@@ -45,8 +76,8 @@ struct Authored {
 
 struct LowerOptions {
     Interface interface = Interface::Baked;
-    std::string_view targetColorSpace = "lin_rec709";
-    std::string_view distanceUnit = "meter", angleUnit = "degree";  // what functions get
+    SceneConventions scene;
+    Instance instance;                          // of the node that the graph implements
     std::vector<Authored>* authored = nullptr;  // gets textures and, unless baked, values; null where nobody asks
     bool traces = false;                        // whether expressions say from which node they come
 };
