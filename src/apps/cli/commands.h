@@ -6,6 +6,8 @@
 
 namespace shaderx::cli {
 
+constexpr int kMostThreads = 1024;
+
 enum ExitCode { kDone = 0, kInputErrors = 1, kBadUsage = 2, kOurBug = 3 };
 
 struct Options {
@@ -15,10 +17,12 @@ struct Options {
     std::string light = "fis", unit = "meter";
     bool flipV = false, transparency = false, blocks = false;
     int bindingBase = -1;
+    int jobs = -1;  // threads; 0: one a core; below it, what the command usually takes
     // of draw
     std::string picture, environment, with = "gl";
     int size = 512, samples = 1024;
     float exposure = 0;
+    bool progress = false;
     // of inspect
     bool lobes = false, cost = false, json = false;
     // of eval

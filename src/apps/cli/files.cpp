@@ -35,6 +35,17 @@ bool readInput(const std::string& file, std::string& text, Diagnostics& diagnost
     return true;
 }
 
+std::optional<doc::ResolvedFile> RememberingResolver::resolve(std::string_view href, std::string_view fromDirectory) {
+    std::optional<doc::ResolvedFile> found = source_.resolve(href, fromDirectory);
+    if (kept_) kept_->includes[{std::string(href), std::string(fromDirectory)}] = found;
+    return found;
+}
+
+std::optional<doc::ResolvedFile> RecallingResolver::resolve(std::string_view href, std::string_view fromDirectory) {
+    const auto found = kept_.includes.find({std::string(href), std::string(fromDirectory)});
+    return found == kept_.includes.end() ? std::nullopt : found->second;
+}
+
 bool writeFile(const std::string& file, std::string_view text, Diagnostics& diagnostics) {
     bool console = file == "-";
     std::string beside = file + ".part" + std::to_string(getpid());

@@ -1,8 +1,11 @@
 // The program's dealings with files.
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostics.h"
@@ -14,6 +17,33 @@ namespace shaderx::cli {
 // A whole plain file, or standard input for "-". Reports where it can't.
 bool readInput(const std::string& file, std::string& text, Diagnostics& diagnostics,
                std::size_t maxBytes = doc::ReadOptions().maxFileBytes);
+
+// The text of a document and what its includes meant, each by its name and the directory that it is relative to.
+struct KeptFiles {
+    std::optional<std::string> text;
+    std::map<std::pair<std::string, std::string>, std::optional<doc::ResolvedFile>> includes;
+};
+
+// Asks another resolver, and remembers what it says.
+class RememberingResolver final : public doc::Resolver {
+  public:
+    RememberingResolver(doc::Resolver& source, KeptFiles* kept) : source_(source), kept_(kept) {}
+    std::optional<doc::ResolvedFile> resolve(std::string_view href, std::string_view fromDirectory) override;
+
+  private:
+    doc::Resolver& source_;
+    KeptFiles* kept_;
+};
+
+// Says what was remembered, and opens no file.
+class RecallingResolver final : public doc::Resolver {
+  public:
+    explicit RecallingResolver(const KeptFiles& kept) : kept_(kept) {}
+    std::optional<doc::ResolvedFile> resolve(std::string_view href, std::string_view fromDirectory) override;
+
+  private:
+    const KeptFiles& kept_;
+};
 
 // Writes beside the file and renames, so that there is never half a file. "-" is standard output.
 bool writeFile(const std::string& file, std::string_view text, Diagnostics& diagnostics);

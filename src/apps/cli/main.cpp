@@ -39,6 +39,17 @@ void shading(CLI::App& command, Options& o) {
                        "place, legalise, print");
 }
 
+void generating(CLI::App& command, Options& o) {
+    command.add_option("FILE", o.files, "documents; - is standard input")->required();
+    command.add_option("-t,--target", o.target, "the shading language")->check(CLI::IsMember({"glsl"}));
+    command.add_option("-o,--out", o.out, "the folder to write to; - is standard output");
+    command
+        .add_option("-j,--jobs", o.jobs, "threads; default: 1; 0: one a core; what is written does not depend on it")
+        ->check(CLI::Range(0, shaderx::cli::kMostThreads));
+    shading(command, o);
+    common(command, o);
+}
+
 void drawing(CLI::App& command, Options& o) {
     command.add_option("FILE", o.files, "the document; - is standard input")->required()->expected(1);
     command.add_option("-o,--out", o.picture, "the picture: .png, or linear .exr or .pfm")->required();
@@ -50,6 +61,9 @@ void drawing(CLI::App& command, Options& o) {
     command.add_option("--samples", o.samples, "samples of the environment a pixel and lobe")
         ->check(CLI::Range(0, 1 << 20));
     command.add_option("--exposure", o.exposure, "stops, for .png");
+    command.add_option("-j,--jobs", o.jobs, "threads of the interpreter; 0, the default: one a core")
+        ->check(CLI::Range(0, shaderx::cli::kMostThreads));
+    command.add_flag("--progress", o.progress, "how far the interpreter is, in lines, also where there is no terminal");
     shading(command, o);
     common(command, o);
 }
@@ -83,11 +97,7 @@ int main(int argc, char** argv) {
     auto named = [&](std::string_view command) { return std::find(argv, argv + argc, command) != argv + argc; };
 
     CLI::App* generate = app.add_subcommand("generate", "write the shaders of MaterialX documents");
-    generate->add_option("FILE", o.files, "documents; - is standard input")->required();
-    generate->add_option("-t,--target", o.target, "the shading language")->check(CLI::IsMember({"glsl"}));
-    generate->add_option("-o,--out", o.out, "the folder to write to; - is standard output");
-    shading(*generate, o);
-    common(*generate, o);
+    if (named("generate")) generating(*generate, o);
 
     CLI::App* validate = app.add_subcommand("validate", "report all mistakes of MaterialX documents");
     validate->add_option("FILE", o.files, "documents; - is standard input")->required();

@@ -10,10 +10,10 @@
 
 namespace shaderx::cli {
 
-void PrintDump::dump(StageName, const std::string& text) { std::fputs(text.c_str(), stdout); }
+void PrintDump::dump(StageName, const std::string& text) { session.print(text); }
 
 // A diagnostic, its kind in colour on a terminal.
-static void print(const Diagnostic& d) {
+static void tell(const Diagnostic& d) {
     std::string text = format(d);
     if (d.code == "limit" && d.hint.empty()) text += "  hint: --limit sets another one\n";
     static const bool colour = isatty(2) && !std::getenv("NO_COLOR");
@@ -28,13 +28,30 @@ static void print(const Diagnostic& d) {
 }
 
 bool Session::report(const Diagnostics& diagnostics, const std::string& replay) {
-    for (const Diagnostic& d : diagnostics.all()) print(d);
+    if (later && !diagnostics.all().empty()) later->sayings.push_back({{}, diagnostics, replay});
+    if (later) return !diagnostics.hasErrors();
+    for (const Diagnostic& d : diagnostics.all()) tell(d);
     if (diagnostics.hasInternal()) {
         bug = true;
         if (!replay.empty()) std::fprintf(stderr, "  replay: shaderx %s\n", replay.c_str());
     }
     failed = failed || diagnostics.hasErrors();
     return !diagnostics.hasErrors();
+}
+
+void Session::say(const Later& kept) {
+    for (const Later::Saying& each : kept.sayings) {
+        if (!each.output.empty()) print(each.output);
+        report(each.diagnostics, each.replay);
+    }
+}
+
+void Session::print(const std::string& text) {
+    Diagnostics diagnostics;
+    if (later)
+        later->sayings.push_back({text, {}, {}});
+    else if (!writeFile("-", text, diagnostics))
+        report(diagnostics);
 }
 
 bool Session::start() {
@@ -57,14 +74,28 @@ bool Session::start() {
     return report(diagnostics);
 }
 
-std::unique_ptr<doc::Document> Session::read(const std::string& file) {
+std::unique_ptr<doc::Document> Session::read(const std::string& file, KeptFiles* kept) {
     Diagnostics diagnostics;
     std::string text;
     std::unique_ptr<doc::Document> document;
-    doc::FileResolver resolver(options.paths, limits.read.maxFileBytes);
-    if (readInput(file, text, diagnostics, limits.read.maxFileBytes))
+    doc::FileResolver files(options.paths, limits.read.maxFileBytes);
+    RememberingResolver remembering(files, kept);
+    doc::Resolver& resolver = kept ? static_cast<doc::Resolver&>(remembering) : files;
+    const bool isKnown = kept && kept->text;
+    if (isKnown) text = *kept->text;
+    if (isKnown || readInput(file, text, diagnostics, limits.read.maxFileBytes)) {
+        if (kept) kept->text = text;
         document = compiler.read(file, std::move(text), resolver, diagnostics, limits.read);
+    }
     report(diagnostics, "validate " + file);
+    return document;
+}
+
+std::unique_ptr<doc::Document> Session::readAgain(const std::string& file, const KeptFiles& kept) {
+    Diagnostics diagnostics;
+    RecallingResolver resolver(kept);
+    auto document = compiler.read(file, kept.text.value_or(""), resolver, diagnostics, limits.read);
+    if (!document) report(diagnostics, "validate " + file);  // for want of memory, say; warnings were told before
     return document;
 }
 
