@@ -40,7 +40,7 @@ color color_correct(color rgb, float hue, float saturation, float gamma, float l
                     float pivot, float exposure) {
     color hued = hsv_adjust(rgb, vector(hue, 1.0, 1.0));
     color saturated = saturate(hued, saturation, color(0.2722287, 0.6740818, 0.0536895));
-    color powered = sign(saturated) * pow(abs(saturated), 1.0 / gamma);
+    color powered = sign(saturated) * pow(abs(saturated), 1.0 / nonzero(gamma));
     color gained = (powered * (1.0 - lift) + lift) * gain;
     return ((gained - pivot) * contrast + pivot) * exp2(exposure);
 }

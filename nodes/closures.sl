@@ -86,6 +86,6 @@ vector chiang_hair_absorption(color hair_color, float b) {
 // The absorption of hair from its melanin (d'Eon et al., An Energy-Conserving Hair Reflectance Model, EGSR 2011).
 vector melanin_absorption(float concentration, float redness, color eumelanin, color pheomelanin) {
     float melanin = -log(max(1.0 - concentration, 0.0001));
-    color absorbed = mix(-log(eumelanin), -log(pheomelanin), redness);
+    color absorbed = mix(-log(max(eumelanin, 1e-30)), -log(max(pheomelanin, 1e-30)), redness);
     return max(vector(melanin * absorbed), 0.0);
 }

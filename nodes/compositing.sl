@@ -16,8 +16,11 @@ float overlay(float fg, float bg) {
 }
 
 // Two shapes that cover a pixel without overlap as long as their alphas allow it (Porter and Duff's "disjoint over").
+// Of a foreground that is more than opaque nothing remains over a background that is not there.
 color4 disjoint_over(color4 fg, color4 bg) {
     float sum = fg.a + bg.a;
-    float kept = sum <= 1.0 ? 1.0 : (1.0 - fg.a) / bg.a;
-    return color4(fg.rgb + bg.rgb * kept, min(sum, 1.0));
+    boolean nowhere = abs(bg.a) < 1e-8;
+    float kept = (1.0 - fg.a) / (nowhere ? 1.0 : bg.a);
+    color both = nowhere ? color(0.0) : fg.rgb + bg.rgb * kept;
+    return color4(sum <= 1.0 ? fg.rgb + bg.rgb : both, min(sum, 1.0));
 }

@@ -1,6 +1,13 @@
 // Reflectance of smooth interfaces. Indices are relative to the medium the light comes from; c is the cosine of the
 // angle of incidence.
 
+// Reflectance of a dielectric face on.
+inline float reflectance_of_index(float ior)
+{
+    float amplitude = (ior - 1.0) / (ior + 1.0);
+    return amplitude * amplitude;
+}
+
 // Admittance u + iw of an interface to the index n + ik for s-polarised light. It is what the cosine is compared with:
 // the amplitude of reflection is (c - y) / (c + y) with y = sqrt((n + ik)^2 - sin^2).
 inline void fresnel_admittance(float c, color n, color k, output color u, output color w)

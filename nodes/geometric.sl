@@ -21,13 +21,13 @@ vector transform_vector(vector v, string from_space, string to_space) {
                                                                 : v;
 }
 
-// A normal goes by the inverse transpose, and keeps unit length.
+// A normal goes by the inverse transpose, and is of unit length after that, also from a space to itself.
 vector transform_normal(vector n, string from_space, string to_space) {
     return is_object_space(from_space) && to_space == "world"
-               ? normalize((world_inverse_transpose_matrix * vector4(n, 0.0)).xyz)
+               ? unit_or_zero((world_inverse_transpose_matrix * vector4(n, 0.0)).xyz)
            : from_space == "world" && is_object_space(to_space)
-               ? normalize((world_transpose_matrix * vector4(n, 0.0)).xyz)
-               : n;
+               ? unit_or_zero((world_transpose_matrix * vector4(n, 0.0)).xyz)
+               : unit_or_zero(n);
 }
 
 // From the eye to the shaded point, of unit length.

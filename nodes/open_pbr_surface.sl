@@ -45,7 +45,7 @@ void open_pbr_medium(color color, float depth, color scatter, output vector abso
 {
     absorption = vector(0.0);
     scattering = vector(0.0);
-    if (depth > 0.0)
+    if (depth > 1e-20)
     {
         vector absorbed = (vector(-log(max(color, 0.000001))) - vector(scatter)) / depth;
         float least = min(absorbed.x, min(absorbed.y, absorbed.z));

@@ -26,10 +26,10 @@ int hash_3d(int x, int y, int z) {
 }
 
 // More than three coordinates are mixed in rounds of three (lookup3's "mix").
-int hash_4d(int x, int y, int z, int w) {
-    int a = x - 559038708;
-    int b = y - 559038708;
-    int c = z - 559038708;
+int hash_rounds(int seed, int x, int y, int z, int w, int v) {
+    int a = x + seed;
+    int b = y + seed;
+    int c = z + seed;
     a = (a - c) ^ rotate_bits(c, 4);
     c += b;
     b = (b - a) ^ rotate_bits(a, 6);
@@ -42,7 +42,15 @@ int hash_4d(int x, int y, int z, int w) {
     a += c;
     c = (c - b) ^ rotate_bits(b, 4);
     b += a;
-    return hash_mix(a + w, b, c);
+    return hash_mix(a + w, b + v, c);
+}
+
+int hash_4d(int x, int y, int z, int w) {
+    return hash_rounds(-559038708, x, y, z, w, 0);
+}
+
+int hash_5d(int x, int y, int z, int w, int v) {
+    return hash_rounds(-559038704, x, y, z, w, v);
 }
 
 // 32 random bits as a number in [0, 1]. Each half is exact as a float, so the sum is rounded once.
@@ -498,10 +506,10 @@ inline float checker(vector2 p) {
 }
 
 // One interval of a colour ramp: `previous` before it and where the ramp has fewer intervals, else linear (0), smooth (1)
-// or a step (2) from the first to the second colour.
+// or a step (2) from the first to the second colour. An interval that does not rise is a step.
 color4 ramp_interval(float x, float begin, float end, color4 first, color4 second, int interpolation, color4 previous,
                      int number, int intervals) {
-    float linear = (clamp(x, begin, end) - begin) / (end - begin);
+    float linear = 1.0 - clamp((end - x) / max(end - begin, 1e-20), 0.0, 1.0);
     float t = interpolation == 0 ? linear : smoothstep(begin, end, x);
     color4 inside = interpolation == 2 ? (end > x ? first : second) : mix(first, second, t);
     return number < intervals && x > begin ? inside : previous;
@@ -517,7 +525,7 @@ color4 ramp(vector2 texcoord, int kind, int interpolation, int intervals, float 
     if (kind == 0) {
         x = texcoord.x;
     } else if (kind == 1) {
-        x = atan2(away.x, away.y) / 6.2831853 + 0.5;
+        x = atan2(away.x, nonzero(away.y)) / 6.2831853 + 0.5;
     } else if (kind == 2) {
         x = length(away) * 1.414;
     } else {

@@ -2,8 +2,8 @@
 // `up_axis` (0 x, 1 y, 2 z) says which way the images stand.
 color4 project_triplanar(texture2d image_x, texture2d image_y, texture2d image_z, vector position, vector normal,
                          int up_axis, float blend) {
-    vector facing = abs(normalize(normal));
-    vector share = facing / (facing.x + facing.y + facing.z);
+    vector facing = abs(unit_or_zero(normal));
+    vector share = facing / nonzero(facing.x + facing.y + facing.z);
     vector weight = pow(share, 1.0 / clamp(blend, 0.03, 1.0));
     weight /= weight.x + weight.y + weight.z;
     vector2 along_x = up_axis == 2 ? position.yz : vector2(position.z, position.y);
@@ -16,11 +16,11 @@ color4 project_triplanar(texture2d image_x, texture2d image_y, texture2d image_z
 // Where a direction lies in an image of the whole sphere; `degrees` turns the image about the upright axis.
 vector2 latitude_longitude(vector direction, float degrees) {
     float longitude = 0.5 - atan2(direction.x, direction.z) * 0.15915494;
-    float latitude = 0.5 + asin(direction.y) * 0.31830989;
+    float latitude = 0.5 + asin(clamp(direction.y, -1.0, 1.0)) * 0.31830989;
     return vector2(longitude + degrees / 360.0, latitude);
 }
 
-// A texture coordinate in tiles of a physical size.
+// A texture coordinate in tiles of a physical size; a size of 0 counts as 1.
 inline vector2 tiled(vector2 texcoord, vector2 tiling, vector2 offset, vector2 image_size, vector2 tile_size) {
-    return (texcoord * tiling - offset) / image_size * tile_size;
+    return (texcoord * tiling - offset) / (image_size + step(abs(image_size), 1e-20)) * tile_size;
 }

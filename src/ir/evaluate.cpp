@@ -124,6 +124,7 @@ bool clamp(const Work& w) {
 }
 
 float smoothstep(float low, float high, float x) {
+    if (!(low < high)) return x >= high ? 1.0f : 0.0f;
     const float t = std::min(std::max((x - low) / (high - low), 0.0f), 1.0f);
     return t * t * (3.0f - 2.0f * t);
 }

@@ -133,6 +133,7 @@ void addArithmetic(std::vector<Case>& c) {
     addFloats(
         c, Op::Smoothstep, 3,
         [](const Numbers& x) {
+            if (x[0] >= x[1]) return x[2] >= x[1] ? 1.0 : 0.0;
             double t = (x[2] - x[0]) / (x[1] - x[0]);
             t = t < 0 ? 0 : t > 1 ? 1 : t;
             return 3 * t * t - 2 * t * t * t;

@@ -42,7 +42,8 @@ inline float clampOf(float x, float low, float high) {
 
 inline float smoothstep(float low, float high, float x) {
     const float t = clampOf((x - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
+    const float smooth = t * t * (3.0f - 2.0f * t), step = x >= high ? 1.0f : 0.0f;
+    return low < high ? smooth : step;
 }
 
 inline Word truncated(float v) {

@@ -230,6 +230,7 @@ struct Simplifier {
                 if (is(x[0], op)) return x[0];
                 return {};
             case Op::Dot:
+                if (x[0] == x[1] && is(x[0], Op::Normalize)) return b.number(1);
                 return ordered();
             case Op::Transpose:
             case Op::Inverse:

@@ -186,7 +186,7 @@ void main()
 	float texture2D2 = texture2D_amplitude * noise_2d(vd.texcoord_0);
 	float sampler2D2 = sampler2D_amplitude * noise_3d(vd.positionObject);
 	vec3 normal = normalize(vd.normalWorld);
-	vec3 base_color_positive = max(mix(a_b_value2 * texture(texture_file, vd.texcoord_0).xyz, a_b_value, n1st_value), 0.0);
+	vec3 base_deepened = max(mix(a_b_value2 * texture(texture_file, vd.texcoord_0).xyz, a_b_value, n1st_value), 0.0);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(normal, -V, normal);
 	vec3 coat_albedo;
@@ -194,7 +194,7 @@ void main()
 	vec3 passed = 1.0 - sampler2D2 * coat_albedo;
 	vec3 specular_albedo;
 	vec3 specular = microfacet_light(0.040000003, N, V, specular_albedo);
-	vec3 diffuse = base_color_positive * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+	vec3 diffuse = base_deepened * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
 	vec3 v = sin(gr_e_value) * (passed * (1.0 - texture2D2 * specular_albedo)) * diffuse + specular * (texture2D2 * passed);
 	out1 = vec4((v + sampler2D2 * coat) * u_envLightIntensity, 1.0);
 }

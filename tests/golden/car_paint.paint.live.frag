@@ -44,7 +44,7 @@ vec2 roughness_anisotropy(float roughness, float anisotropy)
 // Turns a vector about an axis by an angle in degrees (Rodrigues' formula).
 vec3 rotate_about(vec3 v, float degrees2, vec3 axis)
 {
-	vec3 a = normalize(axis);
+	vec3 a = axis * inversesqrt(max(dot(axis, axis), 1e-37));
 	float angle = radians(degrees2);
 	float cosine = cos(angle);
 	return v * cosine + cross(v, a) * sin(angle) + a * (dot(v, a) * (1.0 - cosine));
@@ -201,7 +201,7 @@ void main()
 	vec3 normal = normalize(vd.normalWorld);
 	vec3 v = normalize(vd.tangentWorld);
 	vec2 coat_alpha = roughness_anisotropy(paint_shader_coat_roughness, paint_shader_coat_anisotropy);
-	vec3 coat_turned_unit = normalize(rotate_about(v, 360.0 * paint_shader_coat_rotation, normal));
+	vec3 coat_turned = rotate_about(v, 360.0 * paint_shader_coat_rotation, normal);
 	vec3 r = clamp(paint_shader_base * paint_shader_base_color, 0.0, 0.99);
 	vec3 v2 = 1.0 - r;
 	vec3 metal_index_ior = v2 / (r + 1.0);
@@ -211,12 +211,12 @@ void main()
 	vec3 metal_index_extinction = sqrt(max((r * v3 - below * below) / v2, 0.0));
 	float coat_blur = paint_shader_coat_roughness * (paint_shader_coat * paint_shader_coat_affect_roughness);
 	vec2 specular_alpha = roughness_anisotropy(mix(paint_shader_specular_roughness, 1.0, coat_blur), paint_shader_specular_anisotropy);
-	vec3 specular_turned_unit = normalize(rotate_about(v, 360.0 * paint_shader_specular_rotation, normal));
-	vec3 specular_tangent = 0.0 < paint_shader_specular_anisotropy ? specular_turned_unit : v;
+	vec3 specular_turned = rotate_about(v, 360.0 * paint_shader_specular_rotation, normal);
+	vec3 specular_tangent = 0.0 < paint_shader_specular_anisotropy ? specular_turned : v;
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(normal, -V, normal);
 	vec3 coat_albedo;
-	vec3 coat = microfacet_light(coat_alpha, N, V, 0.0 < paint_shader_coat_anisotropy ? coat_turned_unit : v, coat_albedo);
+	vec3 coat = microfacet_light(coat_alpha, N, V, 0.0 < paint_shader_coat_anisotropy ? coat_turned : v, coat_albedo);
 	vec3 v4 = mix(vec3(1), paint_shader_coat_color, paint_shader_coat) * (1.0 - paint_shader_coat * coat_albedo);
 	vec3 v5 = v4 * (1.0 - paint_shader_metalness);
 	vec3 specular_albedo;

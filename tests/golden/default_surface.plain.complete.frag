@@ -230,7 +230,7 @@ void main()
 	float coat_gamma = plain_shader_coat_affect_color * clamp(plain_shader_coat, 0.0, 1.0) + 1.0;
 	vec3 subsurface_deepened = pow(max(plain_shader_subsurface_color, 0.0), vec3(coat_gamma));
 	float thin_walled_weight = plain_shader_thin_walled ? 1.0 : 0.0;
-	float coat_amplitude = (plain_shader_coat_IOR - 1.0) / (plain_shader_coat_IOR + 1.0);
+	float amplitude = (plain_shader_coat_IOR - 1.0) / (plain_shader_coat_IOR + 1.0);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	float x = 1.0 - plain_shader_metalness;
 	vec3 N = faceforward(normal, -V, normal);
@@ -285,7 +285,7 @@ void main()
 		vec3 dip3 = is_metal ? dip2 : vec3(0);
 		float angle = radians(360.0 * (is_coat ? plain_shader_coat_rotation : plain_shader_specular_rotation));
 		float cosine = cos(angle);
-		vec3 v5 = normalize(v * cosine + v3 * sin(angle) + normal * (x2 * (1.0 - cosine)));
+		vec3 v5 = v * cosine + v3 * sin(angle) + normal * (x2 * (1.0 - cosine));
 		vec3 X = test2 ? v5 : v;
 		vec3 albedo;
 		vec3 radiance3 = microfacet_light(roughness, is_transmitted, which < 2, ior, base2, rise4, bend3, dip3, N, V, X, albedo);
@@ -318,8 +318,8 @@ void main()
 	vec3 v14 = plain_shader_transmission * passed * (radiance2 * (u_refractionTwoSided ? plain_shader_transmission_color * plain_shader_transmission_color : plain_shader_transmission_color));
 	vec3 v15 = v12 + thin_walled_weight * v10 * translucent + v13 + v14;
 	vec3 v16 = v15 + plain_shader_specular_color * radiance * (plain_shader_specular * v7) + metal * (plain_shader_metalness * v6);
-	float x7 = plain_shader_coat * ((1.0 - coat_amplitude * coat_amplitude) * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0)));
-	vec3 v17 = plain_shader_emission * plain_shader_emission_color * (1.0 - plain_shader_coat + plain_shader_coat_color * x7);
-	vec3 v18 = (v16 + plain_shader_coat * coat) * u_envLightIntensity + v17;
-	out1 = vec4(dot(plain_shader_opacity, vec3(0.2722287, 0.6740818, 0.0536895)) * v18, 1.0);
+	vec3 v17 = plain_shader_coat_color * (plain_shader_coat * ((1.0 - amplitude * amplitude) * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0))));
+	vec3 v18 = plain_shader_emission * plain_shader_emission_color * (1.0 - plain_shader_coat + v17);
+	vec3 v19 = (v16 + plain_shader_coat * coat) * u_envLightIntensity + v18;
+	out1 = vec4(dot(plain_shader_opacity, vec3(0.2722287, 0.6740818, 0.0536895)) * v19, 1.0);
 }

@@ -234,7 +234,7 @@ void main()
 	float coat_gamma = tinted_shader_coat_affect_color * clamp(tinted_shader_coat, 0.0, 1.0) + 1.0;
 	vec3 subsurface_deepened = pow(max(tinted_shader_subsurface_color, 0.0), vec3(coat_gamma));
 	float thin_walled_weight = tinted_shader_thin_walled ? 1.0 : 0.0;
-	float coat_amplitude = (tinted_shader_coat_IOR - 1.0) / (tinted_shader_coat_IOR + 1.0);
+	float amplitude = (tinted_shader_coat_IOR - 1.0) / (tinted_shader_coat_IOR + 1.0);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	float x = 1.0 - tinted_shader_metalness;
 	vec3 N = faceforward(normal, -V, normal);
@@ -289,7 +289,7 @@ void main()
 		vec3 dip3 = is_metal ? dip2 : vec3(0);
 		float angle = radians(360.0 * (is_coat ? tinted_shader_coat_rotation : tinted_shader_specular_rotation));
 		float cosine = cos(angle);
-		vec3 v5 = normalize(v * cosine + v3 * sin(angle) + normal * (x2 * (1.0 - cosine)));
+		vec3 v5 = v * cosine + v3 * sin(angle) + normal * (x2 * (1.0 - cosine));
 		vec3 X = test2 ? v5 : v;
 		vec3 albedo;
 		vec3 radiance3 = microfacet_light(roughness, is_transmitted, which < 2, ior, base2, rise4, bend3, dip3, N, V, X, albedo);
@@ -323,7 +323,7 @@ void main()
 	vec3 v15 = v12 + thin_walled_weight * v10 * translucent + v13 + v14;
 	vec3 v16 = v15 + tinted_shader_specular_color * radiance * (tinted_shader_specular * v7);
 	vec3 v17 = (v16 + metal * (tinted_shader_metalness * v6) + tinted_shader_coat * coat) * u_envLightIntensity;
-	float x7 = tinted_shader_coat * ((1.0 - coat_amplitude * coat_amplitude) * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0)));
-	vec3 v18 = v17 + tinted_shader_emission * tinted_shader_emission_color * (1.0 - tinted_shader_coat + tinted_shader_coat_color * x7);
-	out1 = vec4(dot(tinted_shader_opacity, vec3(0.2722287, 0.6740818, 0.0536895)) * v18, 1.0);
+	vec3 v18 = tinted_shader_coat_color * (tinted_shader_coat * ((1.0 - amplitude * amplitude) * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0))));
+	vec3 v19 = v17 + tinted_shader_emission * tinted_shader_emission_color * (1.0 - tinted_shader_coat + v18);
+	out1 = vec4(dot(tinted_shader_opacity, vec3(0.2722287, 0.6740818, 0.0536895)) * v19, 1.0);
 }

@@ -83,11 +83,11 @@ vec3 microfacet_light(vec3 N, vec3 V, out vec3 albedo)
 void main()
 {
 	vec3 normal = normalize(vd.normalWorld);
-	vec3 base_color_positive = max(mix(used_in, vec3(0.3, 0.28, 0.25), used_wear), 0.0);
+	vec3 base_deepened = max(mix(used_in, vec3(0.3, 0.28, 0.25), used_wear), 0.0);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(normal, -V, normal);
 	vec3 specular_albedo;
 	vec3 specular = microfacet_light(N, V, specular_albedo);
-	vec3 v = (1.0 - specular_albedo) * (base_color_positive * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0));
-	out1 = vec4((specular + v) * u_envLightIntensity, 1.0);
+	vec3 light = specular + (1.0 - specular_albedo) * (base_deepened * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0));
+	out1 = vec4(light * u_envLightIntensity, 1.0);
 }

@@ -95,11 +95,11 @@ void main()
 	vec3 direction = 2.0 * texture(brick_normal_picture_file, vd.texcoord_0).xyz - 1.0;
 	vec3 v2 = normalize(vd.tangentWorld) * (0.8 * direction.x) + normalize(vd.bitangentWorld) * (0.8 * direction.y);
 	vec3 brick_normal = normalize(v2 + normalize(vd.normalWorld) * direction.z);
-	vec3 base_color_positive = max(mix(curve, v / 12.92, step(v, vec3(0.04045))), 0.0);
+	vec3 base_deepened = max(mix(curve, v / 12.92, step(v, vec3(0.04045))), 0.0);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(brick_normal, -V, brick_normal);
 	vec3 specular_albedo;
 	vec3 specular = microfacet_light(brick_roughness * brick_roughness, N, V, specular_albedo);
-	vec3 v3 = (1.0 - specular_albedo) * (base_color_positive * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0));
-	out1 = vec4((specular + v3) * u_envLightIntensity, 1.0);
+	vec3 light = specular + (1.0 - specular_albedo) * (base_deepened * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0));
+	out1 = vec4(light * u_envLightIntensity, 1.0);
 }

@@ -96,7 +96,7 @@ void main()
 	bool test = 1.0 <= mod(dot(floor(fine_count * vd.texcoord_0), vec2(1)), 2.0);
 	vec3 coarse = 1.0 <= mod(dot(floor(8.0 * vd.texcoord_0), vec2(1)), 2.0) ? coarse_odd : vec3(0.9);
 	vec3 normal = normalize(vd.normalWorld);
-	vec3 base_color_positive = max(test ? vec3(0.1) : vec3(0.9), 0.0);
+	vec3 base_deepened = max(test ? vec3(0.1) : vec3(0.9), 0.0);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(normal, -V, normal);
 	vec3 specular_albedo;
@@ -104,7 +104,7 @@ void main()
 	vec3 passed = 1.0 - specular_albedo;
 	vec3 sheen_albedo;
 	vec3 sheen = sheen_bsdf_environment(coarse, N, V, sheen_albedo);
-	vec3 diffuse = base_color_positive * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
+	vec3 diffuse = base_deepened * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
 	vec3 light = specular + passed * (1.0 - cloth_shader_sheen * sheen_albedo) * diffuse + sheen * (cloth_shader_sheen * passed);
 	out1 = vec4(light * u_envLightIntensity, 1.0);
 }

@@ -90,7 +90,7 @@ void main()
 {
 	vec3 curve = pow(max((sign_shader_base_color + 0.055) / 1.055, 0.0), vec3(2.4));
 	vec3 normal = normalize(vd.normalWorld);
-	vec3 base_color_positive = max(mix(curve, sign_shader_base_color / 12.92, step(sign_shader_base_color, vec3(0.04045))), 0.0);
+	vec3 base_deepened = max(mix(curve, sign_shader_base_color / 12.92, step(sign_shader_base_color, vec3(0.04045))), 0.0);
 	vec3 emitted_color = sign_shader_emission * (mat3(1.705051, -0.130256, -0.024003, -0.621792, 1.140805, -0.128969, -0.083259, -0.010548, 1.152972) * sign_shader_emission_color);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(normal, -V, normal);
@@ -99,8 +99,8 @@ void main()
 	vec3 v = mix(vec3(1), sign_shader_coat_color, sign_shader_coat) * (1.0 - sign_shader_coat * coat_albedo);
 	vec3 specular_albedo;
 	vec3 specular = microfacet_light(0.040000003, N, V, specular_albedo);
-	vec3 diffuse = base_color_positive * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-	vec3 light = v * (1.0 - specular_albedo) * diffuse + v * specular + sign_shader_coat * coat;
-	vec3 v2 = 1.0 - sign_shader_coat + sign_shader_coat_color * (sign_shader_coat * (0.96 * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0))));
-	out1 = vec4(light * u_envLightIntensity + emitted_color * v2, 1.0);
+	vec3 v2 = v * (1.0 - specular_albedo) * (base_deepened * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0));
+	vec3 v3 = 1.0 - sign_shader_coat + sign_shader_coat_color * (sign_shader_coat * (0.96 * (1.0 - pow(1.0 - abs(dot(normal, V)), 5.0))));
+	vec3 v4 = (v2 + v * specular + sign_shader_coat * coat) * u_envLightIntensity + emitted_color * v3;
+	out1 = vec4(v4, 1.0);
 }

@@ -48,6 +48,8 @@ const NamedDomain kNamed[] = {
     {"base", {0, 1, {0, 1}}},
     {"exponent", {0.5f, 8, {5}}},
     {"gamma", {0.2f, 3, {1}}},
+    {"rotationrange", {0, 90, {0}}},
+    {"scalerange", {0.5f, 2, {1}}},
 };
 
 // Functions that lose digits on the way from inputs that are exact, which moving the inputs does not show.
@@ -61,6 +63,14 @@ const Loose kLoose[] = {
     {"unified_noise_3d", 0.02},
     {"ND_unifiednoise2d_float", 0.02},
     {"ND_unifiednoise3d_float", 0.02},
+    // take the fraction of products of some thousands as random numbers
+    {"hex_random", 0.02},
+    {"hex_texel", 0.1},
+    {"hex_tiled", 0.1},
+    {"hex_tiled_normal", 0.1},
+    {"ND_hextiledimage_color3", 0.1},
+    {"ND_hextiledimage_color4", 0.1},
+    {"ND_hextilednormalmap_vector3", 0.1},
 };
 
 struct Maker {

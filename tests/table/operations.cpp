@@ -63,19 +63,13 @@ using Values = std::span<const Value>;
 // A component of an operand; a scalar meets every component.
 float at(Values v, std::size_t k, int i) { return v[k].f(componentCount(v[k].type) == 1 ? 0 : i); }
 
-// Where an operation is not defined although the interpreter gives a number: see ops.h. The range of smoothstep and
-// clamp must not be turned around, which languages leave undefined.
+// Where an operation is not defined although the interpreter gives a number: see ops.h.
 std::function<bool(Values, int)> definedness(Op op) {
     switch (op) {
         case Op::Pow:
             return [](Values v, int i) { return at(v, 0, i) > 0 || (at(v, 0, i) == 0 && at(v, 1, i) > 0); };
         case Op::Atan2:
             return [](Values v, int i) { return at(v, 0, i) != 0 || at(v, 1, i) != 0; };
-        case Op::Smoothstep:
-            return [](Values v, int i) { return at(v, 0, i) < at(v, 1, i); };
-        case Op::Clamp:
-            return
-                [](Values v, int i) { return hasIntegers(v) ? v[1].i(0) <= v[2].i(0) : !(at(v, 1, i) > at(v, 2, i)); };
         case Op::Div:
         case Op::Mod:
             return [](Values v, int i) { return hasIntegers(v) ? v[1].i(0) != 0 : at(v, 1, i) != 0; };
@@ -107,14 +101,10 @@ Domain domainOf(Op op, std::size_t k, Type type) {
             return d;
         case Op::Clamp:
             d.edges = {0, 1, -1, kNan};
-            if (k == 1) d.high = 1;
-            if (k == 2) d.low = -1;
             return d;
         case Op::Smoothstep:
-            d.edges = {};
-            if (k == 0) d.high = 0.5f;
-            if (k == 1) d.low = -0.5f;
-            if (k == 2) d.edges = {0, -0.0f, 1, 1e10f, -1e10f};
+            d.edges = {0, 1, -1};  // often the same for both edges and the number
+            if (k == 2) d.edges.insert(d.edges.end(), {1e10f, -1e10f});
             return d;
         case Op::Index:
             d.low = 0, d.high = 3;

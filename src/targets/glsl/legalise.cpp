@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include "passes/copy.h"
 #include "passes/place.h"
@@ -107,7 +108,8 @@ struct Legaliser {
             ExprId quotient = b.append(Op::Div, type, {o[0], o[1]});
             return b.append(Op::Sub, type, {o[0], b.append(Op::Mul, type, {o[1], quotient})});
         }
-        if (info(e.op).rule == TypeRule::Wider && isVector(type)) return componentwise(e.op, type, o);
+        if (e.op == Op::Smoothstep || e.op == Op::Clamp || (info(e.op).rule == TypeRule::Wider && isVector(type)))
+            return componentwise(e.op, type, o);
         if ((e.op == Op::TextureLevel || e.op == Op::TextureGrad) && type != Type::Vector4)
             return b.append(Op::Swizzle, type, {b.append(e.op, Type::Vector4, o)},
                             swizzleMask(componentCount(type), 0, 1, 2));
@@ -145,7 +147,47 @@ struct Legaliser {
                           std::span<const std::uint32_t>(words).first(static_cast<std::size_t>(componentCount(type))));
     }
 
+    ExprId number(float v) {
+        const std::uint32_t word = std::bit_cast<std::uint32_t>(v);
+        return b.constant(Type::Float, std::span(&word, 1));
+    }
+
+    // How the edges of smoothstep and clamp lie, as far as constants say.
+    enum class Edges { Rising, Falling, Unknown };
+    Edges edges(ExprId low, ExprId high) const {
+        if (!fresh.isConstant(low) || !fresh.isConstant(high) || b.type(low) == Type::Integer) return Edges::Unknown;
+        const std::span<const std::uint32_t> lows = fresh.constantWords(low), highs = fresh.constantWords(high);
+        const std::size_t n = std::max(lows.size(), highs.size());
+        std::size_t rising = 0;
+        for (std::size_t i = 0; i < n; i++)
+            rising += std::bit_cast<float>(lows[lows.size() == 1 ? 0 : i]) <
+                      std::bit_cast<float>(highs[highs.size() == 1 ? 0 : i]);
+        return rising == n ? Edges::Rising : rising == 0 ? Edges::Falling : Edges::Unknown;
+    }
+
+    // The language leaves both undefined unless the edges rise. As smoothstep is the same from either end, it can start
+    // at `high`, where it is 1 however the edges lie.
+    ExprId clampAnyway(Type type, std::span<const ExprId> o) {
+        return componentwise(Op::Min, type, std::array{componentwise(Op::Max, type, std::array{o[0], o[1]}), o[2]});
+    }
+    ExprId smoothstepAnyway(Type type, ExprId low, ExprId high, ExprId x) {
+        auto wider = [&](ExprId e, ExprId f) { return isVector(b.type(e)) ? b.type(e) : b.type(f); };
+        ExprId span = b.append(Op::Sub, wider(high, low), {high, low});
+        span = b.append(Op::Max, b.type(span), {span, number(1e-20f)});
+        ExprId t = b.append(Op::Sub, wider(high, x), {high, x});
+        t = b.append(Op::Clamp, type, {b.append(Op::Div, type, {t, span}), number(0), number(1)});
+        const ExprId slope = b.append(Op::Sub, type, {number(3), b.append(Op::Mul, type, {number(2), t})});
+        return b.append(Op::Sub, type, {number(1), b.append(Op::Mul, type, {b.append(Op::Mul, type, {t, t}), slope})});
+    }
+
     ExprId componentwise(Op op, Type type, std::span<const ExprId> given) {
+        if (op == Op::Clamp && edges(given[1], given[2]) != Edges::Rising) return clampAnyway(type, given);
+        if (op == Op::Smoothstep) {
+            const Edges lie = edges(given[0], given[1]);
+            if (lie == Edges::Falling) return componentwise(Op::Step, type, given.subspan(1));
+            if (lie == Edges::Unknown) return smoothstepAnyway(type, given[0], given[1], given[2]);
+        }
+        if (!isVector(type)) return b.append(op, type, given);
         ExprId o[3];
         const std::size_t n = given.size();
         std::copy(given.begin(), given.end(), o);

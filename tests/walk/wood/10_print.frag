@@ -110,17 +110,17 @@ void main()
 	vec3 v2 = normalize(vd.tangentWorld) * (NG_wood_relief * direction.x) + normalize(vd.bitangentWorld) * (NG_wood_relief * direction.y);
 	vec3 wood_normal = normalize(v2 + normal * direction.z);
 	float alpha = SR_lacquered_wood_coat_roughness * SR_lacquered_wood_coat_roughness;
-	vec3 base_color_positive = max(mix(curve, v / 12.92, step(v, vec3(0.04045))) * NG_wood_stain, 0.0);
-	vec3 base_deepened = pow(base_color_positive, vec3(SR_lacquered_wood_coat_affect_color * clamp(SR_lacquered_wood_coat, 0.0, 1.0) + 1.0));
+	vec3 v3 = max(mix(curve, v / 12.92, step(v, vec3(0.04045))) * NG_wood_stain, 0.0);
+	vec3 base_deepened = pow(v3, vec3(SR_lacquered_wood_coat_affect_color * clamp(SR_lacquered_wood_coat, 0.0, 1.0) + 1.0));
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 coat_albedo;
 	vec3 coat = microfacet_light(alpha, SR_lacquered_wood_coat_IOR, faceforward(normal, -V, normal), V, coat_albedo);
-	vec3 v3 = mix(vec3(1), SR_lacquered_wood_coat_color, SR_lacquered_wood_coat) * (1.0 - SR_lacquered_wood_coat * coat_albedo);
+	vec3 v4 = mix(vec3(1), SR_lacquered_wood_coat_color, SR_lacquered_wood_coat) * (1.0 - SR_lacquered_wood_coat * coat_albedo);
 	vec3 N = faceforward(wood_normal, -V, wood_normal);
 	vec3 specular_albedo;
 	vec3 specular = microfacet_light(wood_roughness * wood_roughness, 1.5, N, V, specular_albedo);
 	vec3 diffuse = base_deepened * environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0);
-	vec3 v4 = SR_lacquered_wood_base * (v3 * (1.0 - SR_lacquered_wood_specular * specular_albedo)) * diffuse;
-	vec3 light = v4 + specular * (SR_lacquered_wood_specular * v3) + SR_lacquered_wood_coat * coat;
+	vec3 v5 = SR_lacquered_wood_base * (v4 * (1.0 - SR_lacquered_wood_specular * specular_albedo)) * diffuse;
+	vec3 light = v5 + specular * (SR_lacquered_wood_specular * v4) + SR_lacquered_wood_coat * coat;
 	out1 = vec4(light * u_envLightIntensity, 1.0);
 }
