@@ -81,6 +81,12 @@ struct TableMaker {
 
 }  // namespace
 
+// Hexagonal tiles take the fractions of products of some thousands as random numbers, which a driver that fuses
+// multiplications with additions rounds to others.
+static bool isOfItsDriver(std::string_view category) {
+    return category == "hextiledimage" || category == "hextilednormalmap";
+}
+
 NodeTable::NodeTable(std::span<const std::uint8_t> libraryImage) {
     NameTable names(namesOf(libraryImage));
     const std::unique_ptr<Library> library = openLibrary(names, libraryImage);
@@ -90,7 +96,7 @@ NodeTable::NodeTable(std::span<const std::uint8_t> libraryImage) {
     const TableMaker maker{definitions, names};
     for (const doc::NodeDefRow& row : library->index().nodedefs) {
         const doc::NodeDef def = definitions.byName(row.name);
-        if (!definitions.implementation(def)) continue;
+        if (!definitions.implementation(def) || isOfItsDriver(names.text(row.category))) continue;
         signatures_.push_back(maker.signature(def));
         const std::string& category = signatures_.back().category;
         if (category.ends_with(kTransform) && signatures_.back().outputs[0].type == "color3")

@@ -163,14 +163,6 @@ struct Wobbly::Copier {
                 o[0] = two(Op::Add, o[0], bad);
                 return bad;
             }
-            case Op::Smoothstep: {
-                ExprId width = two(Op::Sub, o[1], o[0]), bad = no(isPositive(width));
-                ExprId more = two(Op::Mul, bad, two(Op::Add, one(Op::Abs, width), b.number(1)));
-                o[1] = two(Op::Add, two(Op::Add, o[1], more), two(Op::Mul, bad, one(Op::Abs, width)));
-                return bad;
-            }
-            case Op::Clamp:
-                return isPositive(two(Op::Sub, o[1], o[2]));
             default:
                 return {};
         }
