@@ -91,7 +91,7 @@ void main()
 	vec3 curve = pow(max((sign_shader_base_color + 0.055) / 1.055, 0.0), vec3(2.4));
 	vec3 normal = normalize(vd.normalWorld);
 	vec3 base_deepened = max(mix(curve, sign_shader_base_color / 12.92, step(sign_shader_base_color, vec3(0.04045))), 0.0);
-	vec3 emitted_color = sign_shader_emission * (mat3(1.705051, -0.130256, -0.024003, -0.621792, 1.140805, -0.128969, -0.083259, -0.010548, 1.152972) * sign_shader_emission_color);
+	vec3 emitted_color = sign_shader_emission * (mat3(1.705051, -0.13025641, -0.024003357, -0.62179214, 1.1408048, -0.12896897, -0.083258875, -0.010548319, 1.1529723) * sign_shader_emission_color);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(normal, -V, normal);
 	vec3 coat_albedo;

@@ -48,6 +48,9 @@ const NamedDomain kNamed[] = {
     {"base", {0, 1, {0, 1}}},
     {"exponent", {0.5f, 8, {5}}},
     {"gamma", {0.2f, 3, {1}}},
+    {"roughness_R", {0.05f, 1, {1}}},
+    {"roughness_TT", {0.05f, 1, {1}}},
+    {"roughness_TRT", {0.05f, 1, {1}}},
     {"rotationrange", {0, 90, {0}}},
     {"scalerange", {0.5f, 2, {1}}},
 };
@@ -63,6 +66,8 @@ const Loose kLoose[] = {
     {"unified_noise_3d", 0.02},
     {"ND_unifiednoise2d_float", 0.02},
     {"ND_unifiednoise3d_float", 0.02},
+    // reads an image where logarithms and angles say
+    {"hair_seen", 0.01},
     // take the fraction of products of some thousands as random numbers
     {"hex_random", 0.02},
     {"hex_texel", 0.1},
