@@ -240,38 +240,66 @@ bool NodeBodies::leaf(doc::NodeDef def, std::string_view name) {
 
 // texcoord and geomcolor by index, which picks one of the attributes; geompropvalue by name.
 bool NodeBodies::attribute(doc::NodeDef def) {
-    constexpr int kMostSets = 8;
+    std::string_view category = names_.text(definitions_.row(def).category);
+    if (category == "texcoord" || category == "geomcolor") return attributeSet(def, nameOf(def), 0, graph::kUsualSets);
     Function f = start(def);
     Builder b(made_, f);
-    std::string_view category = names_.text(definitions_.row(def).category);
     auto outputs = definitions_.outputs(def);
     Type type = typeNamed(names_.text(outputs[0].type));
-    bool texcoord = category == "texcoord", color = category == "geomcolor";
+    // Geometry carries floats; what text or file it names is not known where pixels are computed: that is the default.
+    constexpr std::uint32_t kName = 0, kDefault = 1;
     ExprId value;
-    if (texcoord || color) {
-        Type held = texcoord ? Type::Vector2 : Type::Color4;
-        for (int i = kMostSets; i-- > 0;) {
-            ExprId set = b.attribute(names_.intern(fmt::format("{}_{}", texcoord ? "texcoord" : "color", i)), held);
-            ExprId isSet = f.params.empty() ? b.boolean(i == 0) : b.op(Op::Equal, {b.param(0), b.integer(i)});
-            value = value ? b.select(isSet, set, value) : set;
-        }
-        if (type == Type::Vector3) value = b.make(type, {value, b.number(0)});
-        if (type == Type::Color3) value = b.swizzle(value, swizzleMask(3, 0, 1, 2));
-        if (type == Type::Float) value = b.component(value, 0);
-    } else {
-        // Geometry carries floats; a text on it is not known where pixels are computed.
-        bool whole = info(type).scalar == Scalar::Float;
-        if (componentCount(type) == 0 || f.params.empty())
-            value = b.null(type);
-        else
-            value = b.emit(Op::GeomProp, whole ? type : Type::Float, {b.param(0)});
-        if (!whole) value = b.convert(value, type);
-    }
+    if (componentCount(type) == 0)
+        value = f.params.size() > kDefault ? b.param(kDefault) : b.null(type);
+    else if (f.params.empty())
+        value = b.null(type);
+    else
+        value = b.emit(Op::GeomProp, info(type).scalar == Scalar::Float ? type : Type::Float, {b.param(kName)});
     if (b.type(value) != type) value = b.convert(value, type);
     if (!value) return false;
     b.addResult(outputs[0].name, value);
     made_.put(std::move(f));
     return true;
+}
+
+// The function of a node that reads one of the sets from `first` to before `end`, by its index where these are several;
+// another index is 0.
+bool NodeBodies::attributeSet(doc::NodeDef def, Name name, int first, int end) {
+    Function f = start(def);
+    f.name = name;
+    Builder b(made_, f);
+    const bool isTexcoord = names_.text(definitions_.row(def).category) == "texcoord";
+    auto outputs = definitions_.outputs(def);
+    const Type type = typeNamed(names_.text(outputs[0].type)), held = isTexcoord ? Type::Vector2 : Type::Color4;
+    ExprId value;
+    for (int i = end; i-- > first;) {
+        const ExprId set = b.attribute(names_.intern(fmt::format("{}_{}", isTexcoord ? "texcoord" : "color", i)), held);
+        if (end - first == 1 || f.params.empty()) {
+            value = set;
+        } else {
+            const ExprId isSet = b.op(Op::Equal, {b.param(0), b.integer(i)});
+            value = b.select(isSet, set, value ? value : b.null(held));
+        }
+    }
+    if (type == Type::Vector3) value = b.make(type, {value, b.number(0)});
+    if (type == Type::Color3) value = b.swizzle(value, swizzleMask(3, 0, 1, 2));
+    if (type == Type::Float) value = b.component(value, 0);
+    if (b.type(value) != type) value = b.convert(value, type);
+    if (!value) return false;
+    b.addResult(outputs[0].name, value);
+    made_.put(std::move(f));
+    return true;
+}
+
+Name NodeBodies::setOf(doc::NodeDef def, int index, Diagnostics& diagnostics) {
+    const Name plain = functionOf(def, diagnostics);
+    if (!plain || (index >= 0 && index < graph::kUsualSets)) return plain;
+    constexpr int kAllSets = 32;
+    const std::string_view which = names_.text(plain);
+    const Name name = names_.intern(index < 0 ? fmt::format("{}@any", which) : fmt::format("{}@{}", which, index));
+    if (made_.findOwn(name)) return name;
+    const bool ok = index < 0 ? attributeSet(def, name, 0, kAllSets) : attributeSet(def, name, index, index + 1);
+    return ok ? name : Name();
 }
 
 doc::NodeDef NodeBodies::nodeFor(std::string_view category, Type type) {

@@ -29,6 +29,7 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     void forgetNames() { uniformNames_.clear(); }
     Name instanceOf(doc::NodeDef def, const graph::Instance& instance, bool& decodes,
                     Diagnostics& diagnostics) override;
+    Name setOf(doc::NodeDef def, int index, Diagnostics& diagnostics) override;
     graph::ColorConversion toWorkingSpace(Name from, ir::Type type, Diagnostics& diagnostics) override;
     std::string_view nearestColorSpace(std::string_view name) override { return spaces_.nearest(name); }
     doc::ColorSpaces& colorSpaces() { return spaces_; }
@@ -57,6 +58,7 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     bool wrap(doc::NodeDef def, doc::ElementRef element, std::string_view function, Diagnostics& diagnostics);
     bool leaf(doc::NodeDef def, std::string_view name);
     bool attribute(doc::NodeDef def);
+    bool attributeSet(doc::NodeDef def, Name name, int first, int end);
     ir::Function start(doc::NodeDef def) const;
     Name nameOf(doc::NodeDef def) const;
     const std::vector<sl::Signature>& known();

@@ -394,9 +394,12 @@ struct Compilation {
     bool isEmptyMaterial() const {
         const graph::Output& output = graph.outputs[0];
         if (output.type != ir::Type::Material || output.source.kind != graph::Source::Kind::Node) return false;
-        for (const graph::Input& input : graph.inputsOf(graph.nodes[output.source.node.index]))
+        bool hasShaders = false;
+        for (const graph::Input& input : graph.inputsOf(graph.nodes[output.source.node.index])) {
+            hasShaders = hasShaders || ir::isClosure(input.type);
             if (ir::isClosure(input.type) && input.source.kind == graph::Source::Kind::Node) return false;
-        return true;
+        }
+        return hasShaders;  // else it is a definition's, which makes its own
     }
 
     bool makeGraph() {
@@ -452,6 +455,8 @@ struct Compilation {
         // Textures inside of nodes that graphs implement.
         const std::vector<ir::Uniform>& inside = bodies.made().uniforms;
         module.uniforms.insert(module.uniforms.end(), inside.begin(), inside.end());
+        const std::vector<ir::AttributeDefault>& usual = bodies.made().attributeDefaults;
+        module.attributeDefaults.insert(module.attributeDefaults.end(), usual.begin(), usual.end());
         if (!ok) return false;
         // What a long document makes of its own nodes is no explosion.
         limits = {options.maxDepth, options.maxExpressions + 32 * module.findOwn(pixel)->exprs.size()};

@@ -125,6 +125,8 @@ struct BlockBinding {
 struct VertexInputBinding {
     std::string name;
     ir::Type type;
+    std::vector<std::uint32_t>
+        value;  // what it is to be where a mesh lacks it, by its bits; empty where nothing says so
 };
 
 // A texture that a shader reads, and how.

@@ -54,7 +54,7 @@ struct Reflector {
         if (from.interface.bindingBase >= 0) number();
         regenerated();
         for (const passes::VertexInput& in : from.interface.inputs)
-            shader.inputs.push_back({from.spelled.at(in.name), in.type});
+            shader.inputs.push_back({from.spelled.at(in.name), in.type, in.value});
     }
 
     void predefined() {
@@ -391,6 +391,10 @@ std::string Shader::reflection() const {
             json.openShortObject();
             json.member("name", in.name);
             json.member("type", info(in.type).name);
+            if (!in.value.empty()) {
+                json.key("default");
+                writeValue(json, in.type, in.value);
+            }
             json.member("semantic", std::string_view(in.name).substr(std::min<std::size_t>(2, in.name.size())));
             json.closeObject();
         }

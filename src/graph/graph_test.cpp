@@ -53,6 +53,7 @@ struct NamedBodies final : Bodies {
         decodes = false;
         return functionOf(def, diagnostics);
     }
+    Name setOf(doc::NodeDef def, int, Diagnostics& diagnostics) override { return functionOf(def, diagnostics); }
     ColorConversion toWorkingSpace(Name from, ir::Type type, Diagnostics&) override {
         doc::NodeDef def = nodeFor(std::string(names.text(from)) + "_to_lin_rec709", type);
         return def ? ColorConversion{definitions.row(def).name, true} : ColorConversion{{}, false};

@@ -1,5 +1,6 @@
 #include "graph/lower.h"
 
+#include <algorithm>
 #include <bit>
 #include <unordered_map>
 #include <unordered_set>
@@ -20,10 +21,15 @@ struct Kind {
         Name property;  // the geometric property that it stands for, if any
         ExprId usual;   // the constant that is its default, once asked for
     };
+    static constexpr std::size_t kNone = ~std::size_t{0};
     std::vector<KindInput> inputs;
     std::vector<Type> outputs;
     bool isMet = false, isAsked = false, hasFiles = false;
-    Name function;  // once asked for; none where nothing implements it
+    // Of a node that reads an attribute of the mesh: the inputs that name it and that say what it is where it is
+    // lacking.
+    std::size_t attributeName = kNone, attributeDefault = kNone;
+    bool isSet = false;  // texcoord, geomcolor: one of several sets of the mesh, by index
+    Name function;       // once asked for; none where nothing implements it
 };
 
 // The colour space that is said for a value, and by which element.
@@ -111,6 +117,7 @@ struct Lowerer {
             operands.push_back(value);
         }
         const Kind& kind = known(n);
+        if (kind.attributeName != Kind::kNone && kind.attributeDefault != Kind::kNone) noteDefault(n, kind);
         FileSpace toDecode;
         Name function = kind.function ? instance(n, kind, toDecode) : Name();
         if (!function) {
@@ -143,12 +150,36 @@ struct Lowerer {
         for (const doc::Port& i : of.inputs)
             kind.inputs.push_back({definitions.element(of.def, i).attribute(d.known().defaultgeomprop), {}});
         for (const Input& i : graph.inputsOf(n)) kind.hasFiles = kind.hasFiles || i.type == Type::Texture2D;
+        const std::string_view category = d.text(definitions.row(of.def).category);
+        kind.isSet = category == "texcoord" || category == "geomcolor";
+        for (std::size_t i = 0; i < of.inputs.size(); i++) {
+            const std::string_view name = d.text(of.inputs[i].name);
+            if (name == "geomprop" || name == "varname") kind.attributeName = i;
+            if (name == "default" || name == "fallback") kind.attributeDefault = i;
+        }
         kind.hasFiles = kind.hasFiles || (definitions.row(of.def).flags & doc::NodeDefRow::HasTokens);
+    }
+
+    // What the host is to supply for an attribute that a mesh lacks, where the node says both by value.
+    void noteDefault(const Node& n, const Kind& kind) {
+        const ExprId name = operands[kind.attributeName], usual = operands[kind.attributeDefault];
+        const Expr &n1 = fresh[name], &n2 = fresh[usual];
+        if (n1.op != Op::Constant || n1.type != Type::String || !Name(n1.payload)) return;
+        std::vector<std::uint32_t> words;
+        if (n2.op == Op::Uniform && n2.type != Type::Texture2D) words = module.uniform(Name(n2.payload))->values;
+        if (n2.op == Op::Constant && componentCount(n2.type)) {
+            auto bits = fresh.constantWords(usual);
+            words.assign(bits.begin(), bits.end());
+        }
+        if (std::all_of(words.begin(), words.end(), [](std::uint32_t w) { return w == 0; })) return;
+        const Name attribute = d.names().intern(fmt::format("geomprop_{}", d.text(Name(n1.payload))));
+        module.attributeDefaults.push_back({attribute, graph.inputsOf(n)[kind.attributeDefault].type, words});
     }
 
     // The function of a node: that of its kind, unless its files are in other spaces than the scene's or their names
     // have tokens. Where that function gives colours as the file has them, `toDecode` is their space.
     Name instance(const Node& n, const Kind& kind, FileSpace& toDecode) {
+        if (kind.isSet) return bodies.setOf(graph.kindOf(n).def, setIndex(), diagnostics);
         if (!kind.hasFiles) return kind.function;
         bool isOther = false;
         files.clear();
@@ -165,6 +196,16 @@ struct Lowerer {
         Name function = bodies.instanceOf(graph.kindOf(n).def, {files, tokens}, decodes, diagnostics);
         if (decodes) toDecode = {};
         return function;
+    }
+
+    // Which set of the mesh the node at hand reads, below 0 where that is not known.
+    int setIndex() const {
+        if (operands.empty()) return 0;
+        const Expr& index = fresh[operands[0]];
+        if (index.op == Op::Constant) return std::max(0, static_cast<int>(fresh.constantWords(operands[0])[0]));
+        // A uniform is baked to its value later on.
+        const Uniform* u = index.op == Op::Uniform ? module.uniform(Name(index.payload)) : nullptr;
+        return u && static_cast<int>(u->values[0]) < kUsualSets ? 0 : -1;
     }
 
     // The space of a node's file. What a port says of it, the outermost first, goes before the scope that it is

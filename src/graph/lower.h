@@ -41,6 +41,9 @@ struct ColorConversion {
     bool isKnown = true;  // are both spaces known?
 };
 
+constexpr int kUsualSets =
+    8;  // of texture coordinates or colours, among which functions of known nodes choose by index
+
 // Finds the function that implements a node. Its parameters are the nodedef's inputs in order, its results the outputs.
 class Bodies {
   public:
@@ -52,6 +55,9 @@ class Bodies {
     virtual Name instanceOf(doc::NodeDef def, const Instance& instance, bool& decodes, Diagnostics& diagnostics) = 0;
     // Takes the name of a uniform for the whole program; false if it is taken.
     virtual bool takeName(Name name) = 0;
+    // The function of a node that reads one of the mesh's sets: made for an index that is beyond the usual ones, or
+    // below 0 where it is not known and may be beyond.
+    virtual Name setOf(doc::NodeDef def, int index, Diagnostics& diagnostics) = 0;
     // From a colour space to the working space of the scene.
     virtual ColorConversion toWorkingSpace(Name from, ir::Type type, Diagnostics& diagnostics) = 0;
     // A known space that an unknown name may mean, or none.

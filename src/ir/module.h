@@ -112,6 +112,13 @@ struct LeafInfo {
     std::vector<Param> params;
 };
 
+// What a geometric attribute is on a mesh that lacks it.
+struct AttributeDefault {
+    Name attribute;
+    Type type;
+    std::vector<std::uint32_t> words;  // its bits
+};
+
 struct StructType {
     Name name;
     std::vector<Param> members;
@@ -154,6 +161,7 @@ class Module {
     std::vector<std::unique_ptr<Function>> functions;  // in the order in which they were added
     std::vector<Uniform> uniforms;
     std::vector<LeafInfo> leaves;
+    std::vector<AttributeDefault> attributeDefaults;  // the first of an attribute counts
     std::vector<StructType> structs;
     std::vector<ExternText> externs;
     std::vector<FunctionSource*> sources;

@@ -165,8 +165,12 @@ ShaderInterface makeStages(Module& module, Name pixel, Name vertex) {
         if (vertexReads.contexts[static_cast<std::size_t>(c)] && i.source == ContextSource::Input)
             made.inputs.push_back({module.names->intern(i.host), i.type});
     }
-    for (auto [name, type] : reads.attributes)
+    for (auto [name, type] : reads.attributes) {
         made.inputs.push_back({module.names->intern(inputName(module.names->text(name))), type});
+        for (const AttributeDefault& usual : module.attributeDefaults)
+            if (usual.attribute == name && usual.type == type && made.inputs.back().value.empty())
+                made.inputs.back().value = usual.words;
+    }
     module.put(std::move(f));
     return made;
 }

@@ -19,6 +19,8 @@ struct Varying {
 struct VertexInput {
     Name name;  // as hosts bind it: i_normal, i_texcoord_0
     ir::Type type;
+    std::vector<std::uint32_t> value =
+        {};  // what it is where a mesh lacks it, by its bits; empty where nothing says so
 };
 
 // What one stage reads from the host. Contexts in the order of context.def; uniforms in that of the module.

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/diagnostics.h"
+#include "base/numbers.h"
 #include "targets/glsl/glsl.h"
 #include "targets/glsl/names.h"
 #include "targets/glsl/printer.h"
@@ -401,6 +403,18 @@ void vertexData(Stage& stage, std::string_view direction) {
     stage.out.line();
 }
 
+// What a reader should know of an attribute that a mesh may lack.
+std::string usualValue(const passes::VertexInput& in) {
+    if (in.value.empty()) return {};
+    std::string text = "  // ";
+    for (std::size_t i = 0; i < in.value.size(); i++) {
+        if (i) text += ", ";
+        text += info(in.type).scalar == Scalar::Float ? formatFloat(std::bit_cast<float>(in.value[i]))
+                                                      : std::to_string(static_cast<int>(in.value[i]));
+    }
+    return text + " where a mesh has none";
+}
+
 void vertexStage(const Module& module, const passes::ShaderInterface& interface, Sources& sources) {
     Stage stage{module, interface, false, text::Namer(reservedWords())};
     version(stage);
@@ -408,7 +422,7 @@ void vertexStage(const Module& module, const passes::ShaderInterface& interface,
     uniforms(stage, interface.vertexUniforms);
     for (const passes::VertexInput& in : interface.inputs) {
         stage.inputs[in.name] = stage.namer.global(module.names->text(in.name));
-        stage.out.line({"in ", typeName(in.type), " ", stage.inputs[in.name], ";"});
+        stage.out.line({"in ", typeName(in.type), " ", stage.inputs[in.name], ";", usualValue(in)});
     }
     stage.out.line();
     vertexData(stage, "out");
