@@ -135,6 +135,14 @@ bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics)
                    [&] { return doc::validate(document, state_->definitions(document), diagnostics); });
 }
 
+std::optional<doc::ColorSpace> Compiler::colorSpace(std::string_view name) const {
+    std::vector<const doc::Document*> documents;
+    for (Library* l : state_->libraries()) documents.push_back(&l->document());
+    doc::ColorSpaces spaces(documents);
+    const doc::ColorSpace* found = spaces.find(name);
+    return found ? std::optional(*found) : std::nullopt;
+}
+
 std::vector<doc::ElementId> Compiler::renderableElements(const doc::Document& document) {
     return doc::renderableElements(document);
 }

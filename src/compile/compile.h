@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,6 +27,7 @@
 #include "base/diagnostics.h"
 #include "base/result.h"
 #include "compile/library.h"
+#include "doc/color_spaces.h"
 #include "doc/document.h"
 #include "doc/read.h"
 #include "graph/lower.h"
@@ -184,6 +186,8 @@ class Compiler {
                                         Diagnostics& diagnostics, const doc::ReadOptions& limits = {});
     // Reports every mistake of a document.
     bool validate(const doc::Document& document, Diagnostics& diagnostics);
+    // A colour space of the libraries, by name or alias; none where there is none of that name.
+    std::optional<doc::ColorSpace> colorSpace(std::string_view name) const;
     // What can be rendered: materials, or the outputs of a document without any.
     std::vector<doc::ElementId> renderableElements(const doc::Document& document);
     // Compiles what is upstream of an element: an output, a node, a nodegraph, a shader or a material. Errors anywhere

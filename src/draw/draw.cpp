@@ -43,9 +43,10 @@ struct Geometry {
     Geometry(const Gl& driver, const scene::Mesh& mesh)
         : gl(driver), indexCount(static_cast<GLsizei>(mesh.triangles.size())) {
         gl.genBuffers(7, buffers);
-        const std::vector<float>* const arrays[] = {&mesh.positions,  &mesh.normals,   &mesh.tangents,
-                                                    &mesh.bitangents, &mesh.texcoords, &mesh.colors};
-        for (std::size_t i = 0; i < 6; i++) fill(buffers[i], arrays[i]->data(), arrays[i]->size() * sizeof(float));
+        for (int i = 0; i < scene::kMeshArrays; i++) {
+            const std::vector<float>& values = scene::valuesOf(mesh, static_cast<scene::MeshArray>(i));
+            fill(buffers[i], values.data(), values.size() * sizeof(float));
+        }
         fill(buffers[6], mesh.triangles.data(), mesh.triangles.size() * sizeof(unsigned));
     }
     ~Geometry() { gl.deleteBuffers(7, buffers); }
@@ -376,25 +377,27 @@ void Renderer::bindTextures() {
 }
 
 void Renderer::bindAttributes() {
-    struct Known {
-        const char* prefix;
-        int buffer, components;
-    };
-    static constexpr Known kKnown[] = {{"i_position", 0, 3},  {"i_normal", 1, 3},   {"i_tangent", 2, 3},
-                                       {"i_bitangent", 3, 3}, {"i_texcoord", 4, 2}, {"i_color", 5, 4}};
     gl.genVertexArrays(1, &vertexArray);
     gl.bindVertexArray(vertexArray);
     for (const Attribute& a : attributes()) {
-        const Known* known = std::find_if(std::begin(kKnown), std::end(kKnown),
-                                          [&](const Known& k) { return a.name.starts_with(k.prefix); });
-        if (known == std::end(kKnown)) {
+        const scene::MeshArray array = scene::meshArrayOf(a.name);
+        if (array == scene::MeshArray::None) {
+            const auto usual = std::find_if(job.attributes.begin(), job.attributes.end(),
+                                            [&](const scene::UniformValue& v) { return v.name == a.name; });
+            if (usual != job.attributes.end()) {
+                std::array<float, 4> value{0, 0, 0, 1};
+                std::copy_n(usual->values.begin(), std::min<std::size_t>(4, usual->values.size()), value.begin());
+                gl.vertexAttrib4fv(a.location, value.data());
+                continue;
+            }
             diagnostics.warning("unbound-attribute",
                                 fmt::format("the sphere has no attribute '{}': it reads as 0", a.name));
             continue;
         }
-        gl.bindBuffer(GL_ARRAY_BUFFER, geometry.buffers[known->buffer]);
+        gl.bindBuffer(GL_ARRAY_BUFFER, geometry.buffers[static_cast<int>(array)]);
         gl.enableVertexAttribArray(a.location);
-        gl.vertexAttribPointer(a.location, known->components, GL_FLOAT, GL_FALSE, 0, nullptr);
+        gl.vertexAttribPointer(a.location, scene::kMeshComponents[static_cast<int>(array)], GL_FLOAT, GL_FALSE, 0,
+                               nullptr);
     }
     gl.bindBuffer(GL_ELEMENT_ARRAY_BUFFER, geometry.buffers[6]);
 }
@@ -571,7 +574,9 @@ Result<Image> Context::State::render(const Job& job, Diagnostics& diagnostics) {
     if (!job.environment.empty()) {
         const Result<scene::Environment> loaded = scene::loadEnvironment(job.environment, maxTexture, diagnostics);
         if (!loaded) return Failure{};
-        renderer.environment = EnvironmentMaps(*loaded, renderer.textures);
+        renderer.environment = EnvironmentMaps(scene::inWorkingSpace(*loaded, job), renderer.textures);
+    } else if (job.working) {
+        renderer.environment = EnvironmentMaps(scene::inWorkingSpace(scene::builtInSky(), job), renderer.textures);
     } else {
         if (!sky.levels) sky = EnvironmentMaps(scene::builtInSky(), *textures);
         renderer.environment = sky;

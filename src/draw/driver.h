@@ -86,6 +86,7 @@ namespace shaderx::draw {
     X(uniformMatrix3fv, UniformMatrix3fv, UNIFORMMATRIX3FV)                            \
     X(uniformMatrix4fv, UniformMatrix4fv, UNIFORMMATRIX4FV)                            \
     X(useProgram, UseProgram, USEPROGRAM)                                              \
+    X(vertexAttrib4fv, VertexAttrib4fv, VERTEXATTRIB4FV)                               \
     X(vertexAttribPointer, VertexAttribPointer, VERTEXATTRIBPOINTER)                   \
     X(viewport, Viewport, VIEWPORT)
 

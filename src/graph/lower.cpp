@@ -173,7 +173,12 @@ struct Lowerer {
         }
         if (std::all_of(words.begin(), words.end(), [](std::uint32_t w) { return w == 0; })) return;
         const Name attribute = d.names().intern(fmt::format("geomprop_{}", d.text(Name(n1.payload))));
-        module.attributeDefaults.push_back({attribute, graph.inputsOf(n)[kind.attributeDefault].type, words});
+        Type type = graph.inputsOf(n)[kind.attributeDefault].type;
+        if (info(type).scalar != Scalar::Float) {  // meshes carry floats
+            type = Type::Float;
+            words[0] = std::bit_cast<std::uint32_t>(static_cast<float>(static_cast<int>(words[0])));
+        }
+        module.attributeDefaults.push_back({attribute, type, words});
     }
 
     // The function of a node: that of its kind, unless its files are in other spaces than the scene's or their names

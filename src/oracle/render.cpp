@@ -99,38 +99,36 @@ struct StageEnvironment : ir::WideEnvironment {
 
 // ---- The vertex stage ----
 
-// A named array of the mesh.
-struct MeshArray {
-    std::string_view prefix;  // of the names that hosts bind
-    const std::vector<float>* values;
-    std::size_t components;
-};
-
 struct VertexEnvironment final : StageEnvironment {
     const ir::Module& module;
-    std::vector<MeshArray> arrays;
-    std::size_t first = 0;  // vertex of lane 0
+    const scene::Mesh& mesh;
+    const std::vector<scene::UniformValue>& usual;  // of attributes that the mesh lacks
+    std::size_t first = 0;                          // vertex of lane 0
 
-    VertexEnvironment(const World& w, const ir::Module& m, const scene::Mesh& mesh)
-        : StageEnvironment(w),
-          module(m),
-          arrays{{"i_position", &mesh.positions, 3}, {"i_normal", &mesh.normals, 3},
-                 {"i_tangent", &mesh.tangents, 3},   {"i_bitangent", &mesh.bitangents, 3},
-                 {"i_texcoord", &mesh.texcoords, 2}, {"i_color", &mesh.colors, 4}} {}
+    VertexEnvironment(const World& w, const ir::Module& m, const scene::Mesh& sphere, const scene::Settings& settings)
+        : StageEnvironment(w), module(m), mesh(sphere), usual(settings.attributes) {}
 
-    const MeshArray* find(std::string_view host) const {
-        for (const MeshArray& a : arrays)
-            if (host.starts_with(a.prefix)) return &a;
+    const std::vector<float>* usualOf(std::string_view host) const {
+        for (const scene::UniformValue& v : usual)
+            if (v.name == host) return &v.values;
         return nullptr;
     }
-    // As OpenGL fills up attributes: with (0, 0, 0, 1). What the mesh lacks reads as that, too.
+    bool isKnown(std::string_view host) const {
+        return scene::meshArrayOf(host) != scene::MeshArray::None || usualOf(host);
+    }
+    // As OpenGL fills up attributes: with (0, 0, 0, 1). What the mesh lacks is what it usually is, or reads as that.
     bool fill(std::string_view host, std::span<LaneWords> words) const {
-        const MeshArray* a = find(host);
+        const scene::MeshArray array = scene::meshArrayOf(host);
+        const bool isOfMesh = array != scene::MeshArray::None;
+        const std::vector<float>* values = isOfMesh ? &scene::valuesOf(mesh, array) : usualOf(host);
+        const std::size_t stride =
+            isOfMesh ? static_cast<std::size_t>(scene::kMeshComponents[static_cast<int>(array)]) : 0;
+        const std::size_t components = isOfMesh ? stride : values ? values->size() : 0;
         for (std::size_t c = 0; c < words.size(); c++)
             for (std::size_t lane = 0; lane < kLanes; lane++) {
-                const std::size_t n = a ? a->components : 0, at = (first + lane) * n + c;
-                const float usual = c == 3 ? 1.0f : 0.0f;
-                words[c].set(lane, c < n && at < a->values->size() ? (*a->values)[at] : usual);
+                const std::size_t at = (first + lane) * stride + c;
+                const float otherwise = c == 3 ? 1.0f : 0.0f;
+                words[c].set(lane, c < components && at < values->size() ? (*values)[at] : otherwise);
             }
         return true;
     }
@@ -156,10 +154,10 @@ bool runVertices(const RenderJob& job, const World& world, const scene::Mesh& me
     const Result<ir::WideProgram> program = ir::WideProgram::prepare(*job.module, *f, diagnostics);
     if (!program) return false;
     ir::WideInterpreter interpreter(*program);
-    VertexEnvironment environment(world, *job.module, mesh);
+    VertexEnvironment environment(world, *job.module, mesh, job);
     for (const passes::VertexInput& input : job.interface->inputs) {
         const std::string_view name = job.module->names->text(input.name);
-        if (!environment.find(name))
+        if (!environment.isKnown(name))
             diagnostics.warning("unbound-attribute",
                                 fmt::format("the sphere has no attribute '{}': it reads as 0", name));
     }
@@ -446,7 +444,9 @@ struct Host {
         if (!job.environment.empty()) {
             const Result<scene::Environment> loaded = scene::loadEnvironment(job.environment, kMaxSide, diagnostics);
             if (!loaded) return false;
-            own.emplace(*loaded);
+            own.emplace(scene::inWorkingSpace(*loaded, job));
+        } else if (job.working) {
+            own.emplace(scene::inWorkingSpace(scene::builtInSky(), job));
         } else if (!builtIn) {
             builtIn.emplace(scene::builtInSky());
         }

@@ -1,6 +1,7 @@
 #include "scene/picture.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -33,6 +34,33 @@ Image reduced(const Image& image, int n) {
     return out;
 }
 
+void multiply(const std::array<float, 9>& m, float* color) {
+    const float r = color[0], g = color[1], b = color[2];
+    for (std::size_t i = 0; i < 3; i++) color[i] = m[3 * i] * r + m[3 * i + 1] * g + m[3 * i + 2] * b;
+}
+
+static float decoded(const WorkingSpace& space, float v) {
+    switch (space.curve) {
+        case WorkingSpace::Curve::Linear:
+            break;
+        case WorkingSpace::Curve::Srgb:
+            return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+        case WorkingSpace::Curve::Gamma:
+            return std::pow(std::max(v, 0.0f), space.gamma);
+    }
+    return v;
+}
+
+Image forDisplay(const Settings& settings, Image picture) {
+    if (!settings.working) return picture;
+    for (std::size_t i = 0; i + 3 < picture.floats.size(); i += 4) {
+        float* color = picture.floats.data() + i;
+        for (int c = 0; c < 3; c++) color[c] = decoded(*settings.working, color[c]);
+        multiply(settings.working->toRec709, color);
+    }
+    return picture;
+}
+
 bool checkOutput(const Settings& settings, Diagnostics& diagnostics) {
     const std::string extension = extensionOf(settings.output);
     if (extension == "png" || extension == "exr" || extension == "pfm") return true;
@@ -45,7 +73,8 @@ bool checkOutput(const Settings& settings, Diagnostics& diagnostics) {
 bool writePicture(const Settings& settings, const Image& picture, Diagnostics& diagnostics) {
     const std::string extension = extensionOf(settings.output);
     if (extension == "png")
-        return image::writePng(settings.output, picture, diagnostics, {.exposure = settings.exposure});
+        return image::writePng(settings.output, forDisplay(settings, picture), diagnostics,
+                               {.exposure = settings.exposure});
     if (extension == "exr") return image::writeExr(settings.output, picture, diagnostics);
     return image::writePfm(settings.output, picture, diagnostics);
 }

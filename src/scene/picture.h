@@ -15,6 +15,12 @@ int supersampling(const Settings& settings);
 // Means of n × n pixels.
 image::Image reduced(const image::Image& image, int n);
 
+// A color times a matrix given row by row, in place.
+void multiply(const std::array<float, 9>& matrix, float* color);
+
+// A picture as a display has to be told: linear Rec. 709.
+image::Image forDisplay(const Settings& settings, image::Image picture);
+
 // Whether the output's name says what kind of picture it is to be; reports unknown-output-format.
 bool checkOutput(const Settings& settings, Diagnostics& diagnostics);
 

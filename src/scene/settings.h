@@ -1,6 +1,8 @@
 // What is to be drawn, but for the material's program.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,14 +25,26 @@ struct UniformValue {
     std::vector<float> values;
 };
 
+// The space that a shader works in where that is not linear Rec. 709: the light of the scene is taken to it, and
+// pictures for displays from it.
+struct WorkingSpace {
+    enum class Curve { Linear, Srgb, Gamma };
+    std::array<float, 9> toRec709, fromRec709;  // of linear values, row by row
+    Curve curve = Curve::Linear;                // how values are encoded
+    float gamma = 1;
+};
+
 struct Settings {
     std::vector<Texture> textures;
     int size = 512;           // pixels a side
     int samples = 1024;       // u_envRadianceSamples
     std::string environment;  // latitude-longitude picture of radiance; empty: the built-in sky
     float exposure = 0;       // in stops, for .png only
-    std::string output;       // .png (sRGB), .exr or .pfm (linear)
+    std::string output;       // .png (sRGB), .exr or .pfm (what the shader gives, in its working space)
+    std::optional<WorkingSpace> working;
     std::vector<UniformValue> uniforms;
+    // What vertex attributes are that the sphere lacks; 0 where nothing says so.
+    std::vector<UniformValue> attributes;
     // Values that uniforms in blocks have unless the scene or `uniforms` sets them: such uniforms have no defaults of
     // their own.
     std::vector<UniformValue> defaults;

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "scene/picture.h"
+
 namespace shaderx::scene {
 
 using image::Image;
@@ -135,6 +137,14 @@ Result<Environment> loadEnvironment(const std::string& file, int maxSide, Diagno
     while (radiance.width > maxSide || radiance.height > maxSide) radiance = halved(radiance);
     Image irradiance = convolve(reduced(radiance));
     return Environment{std::move(radiance), std::move(irradiance)};
+}
+
+Environment inWorkingSpace(Environment environment, const Settings& settings) {
+    if (!settings.working) return environment;
+    for (image::Image* map : {&environment.radiance, &environment.irradiance})
+        for (std::size_t i = 0; i + 3 < map->floats.size(); i += 4)
+            multiply(settings.working->fromRec709, map->floats.data() + i);
+    return environment;
 }
 
 }  // namespace shaderx::scene

@@ -4,6 +4,7 @@
 #include "base/diagnostics.h"
 #include "base/result.h"
 #include "image/image.h"
+#include "scene/settings.h"
 
 namespace shaderx::scene {
 
@@ -18,5 +19,8 @@ Environment builtInSky();
 // A picture as environment. Values that are no radiance (negative, infinite, NaN) count as 0; one of bytes is taken as
 // sRGB. Neither side may exceed `maxSide`: larger pictures are halved until they fit.
 Result<Environment> loadEnvironment(const std::string& file, int maxSide, Diagnostics& diagnostics);
+
+// The same light in the working space of a shader.
+Environment inWorkingSpace(Environment environment, const Settings& settings);
 
 }  // namespace shaderx::scene

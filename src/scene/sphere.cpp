@@ -1,11 +1,34 @@
 #include "scene/sphere.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace shaderx::scene {
 
 using std::numbers::pi;
+
+MeshArray meshArrayOf(std::string_view attribute) {
+    constexpr std::string_view kPrefixes[kMeshArrays] = {"i_position",  "i_normal",   "i_tangent",
+                                                         "i_bitangent", "i_texcoord", "i_color"};
+    for (int i = 0; i < kMeshArrays; i++)
+        if (attribute.starts_with(kPrefixes[i])) return static_cast<MeshArray>(i);
+    constexpr std::string_view kProperty = "i_geomprop_";
+    constexpr std::string_view kTexcoords[] = {
+        "st",  "st0", "st1",  "st_0",  "st_1",  "uv",       "uv0",        "uv1",        "uv_0",       "uv_1",
+        "UV0", "UV1", "map1", "UVMap", "UVSet", "texcoord", "texcoord_0", "texcoord_1", "TEXCOORD_0", "TEXCOORD_1"};
+    if (!attribute.starts_with(kProperty)) return MeshArray::None;
+    attribute.remove_prefix(kProperty.size());
+    const bool isTexcoord = std::find(std::begin(kTexcoords), std::end(kTexcoords), attribute) != std::end(kTexcoords);
+    return isTexcoord ? MeshArray::Texcoords : MeshArray::None;
+}
+
+const std::vector<float>& valuesOf(const Mesh& mesh, MeshArray array) {
+    const std::vector<float>* const arrays[kMeshArrays] = {&mesh.positions,  &mesh.normals,   &mesh.tangents,
+                                                           &mesh.bitangents, &mesh.texcoords, &mesh.colors};
+    return *arrays[static_cast<int>(array)];
+}
 
 Mesh makeSphere(int around, int down) {
     Mesh mesh;

@@ -14,7 +14,7 @@ struct Options {
     std::vector<std::string> files, paths, libraries, limits;
     std::string out = ".", target = "glsl", element, interface = "live", dump;
     // of the shaders that are made
-    std::string light = "fis", unit = "meter";
+    std::string light = "fis", unit = "meter", colorspace = "lin_rec709";
     bool flipV = false, transparency = false, blocks = false;
     int bindingBase = -1;
     int jobs = -1;  // threads; 0: one a core; below it, what the command usually takes

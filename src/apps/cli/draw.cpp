@@ -1,4 +1,5 @@
 // The command that draws a material.
+#include <algorithm>
 #include <bit>
 #include <filesystem>
 #include <utility>
@@ -21,12 +22,12 @@ static std::string resolved(const Options& options, const std::string& document,
     return beside.string();
 }
 
-// The default of a uniform, as numbers of any kind are set.
-static std::vector<float> numbersOf(const UniformBinding& u) {
+// A value by its bits, as numbers of any kind are set.
+static std::vector<float> numbersOf(ir::Type type, std::span<const std::uint32_t> words) {
     std::vector<float> numbers;
-    for (std::uint32_t w : u.value)
-        numbers.push_back(ir::info(u.type).scalar == ir::Scalar::Float ? std::bit_cast<float>(w)
-                                                                       : static_cast<float>(static_cast<int>(w)));
+    for (std::uint32_t w : words)
+        numbers.push_back(ir::info(type).scalar == ir::Scalar::Float ? std::bit_cast<float>(w)
+                                                                     : static_cast<float>(static_cast<int>(w)));
     return numbers;
 }
 
@@ -36,6 +37,45 @@ static Result<Shader> shaderOf(Session& s, const std::string& file, const doc::D
     Result<Shader> shader = s.compiler.generate(document, element, s.how(), diagnostics);
     s.reportElement(file, document, element, diagnostics);
     return shader;
+}
+
+// The space that the shader works in, where pictures and light have to be taken from it and to it.
+static std::optional<scene::WorkingSpace> workingSpace(const Compiler& compiler, const std::string& name) {
+    const std::optional<doc::ColorSpace> space = compiler.colorSpace(name), display = compiler.colorSpace("lin_rec709");
+    if (!space || !display || space->isData) return {};
+    const doc::Matrix3 to = doc::matrixBetween(*space, *display), from = doc::matrixBetween(*display, *space);
+    if (doc::isIdentity(to) && doc::isSameCurve(*space, *display)) return {};
+    scene::WorkingSpace working;
+    std::copy(to.begin(), to.end(), working.toRec709.begin());
+    std::copy(from.begin(), from.end(), working.fromRec709.begin());
+    if (space->curve == doc::ColorSpace::Curve::Srgb) working.curve = scene::WorkingSpace::Curve::Srgb;
+    if (space->curve == doc::ColorSpace::Curve::Gamma) working.curve = scene::WorkingSpace::Curve::Gamma;
+    working.gamma = static_cast<float>(space->gamma);
+    return working;
+}
+
+static scene::Settings settingsOf(const Options& options, const Session& s, const std::string& file,
+                                  const Shader& shader) {
+    scene::Settings settings;
+    settings.size = options.size;
+    settings.samples = options.samples;
+    settings.environment = options.environment;
+    settings.exposure = options.exposure;
+    settings.output = options.picture;
+    settings.working = workingSpace(s.compiler, options.colorspace);
+    for (const UniformBinding& u : shader.uniforms)
+        if (u.block >= 0) settings.defaults.push_back({u.name, numbersOf(u.type, u.value)});
+    for (const VertexInputBinding& in : shader.inputs)
+        if (!in.value.empty()) settings.attributes.push_back({in.name, numbersOf(in.type, in.value)});
+    for (const TextureBinding& t : shader.textures) {
+        scene::Texture texture{
+            t.uniform, resolved(options, file, t.file), t.uAddress, t.vAddress, t.filter, {0, 0, 0, 0}, t.path};
+        std::size_t n = t.defaultColor.size();
+        for (std::size_t i = 0; i < 4; i++)
+            texture.defaultColor[i] = n == 1 ? t.defaultColor[0] : i < n ? t.defaultColor[i] : i == 3 ? 1.0f : 0.0f;
+        settings.textures.push_back(std::move(texture));
+    }
+    return settings;
 }
 
 int draw(const Options& options) {
@@ -49,22 +89,7 @@ int draw(const Options& options) {
     Result<Shader> shader = shaderOf(s, file, *document, elements[0]);
     if (!shader || !options.dump.empty()) return s.exitCode();
 
-    scene::Settings settings;
-    settings.size = options.size;
-    settings.samples = options.samples;
-    settings.environment = options.environment;
-    settings.exposure = options.exposure;
-    settings.output = options.picture;
-    for (const UniformBinding& u : shader->uniforms)
-        if (u.block >= 0) settings.defaults.push_back({u.name, numbersOf(u)});
-    for (const TextureBinding& t : shader->textures) {
-        scene::Texture texture{
-            t.uniform, resolved(options, file, t.file), t.uAddress, t.vAddress, t.filter, {0, 0, 0, 0}, t.path};
-        std::size_t n = t.defaultColor.size();
-        for (std::size_t i = 0; i < 4; i++)
-            texture.defaultColor[i] = n == 1 ? t.defaultColor[0] : i < n ? t.defaultColor[i] : i == 3 ? 1.0f : 0.0f;
-        settings.textures.push_back(std::move(texture));
-    }
+    scene::Settings settings = settingsOf(options, s, file, *shader);
     Diagnostics diagnostics;
     if (options.with == "interpreter") {
         oracle::RenderJob job{std::move(settings), &shader->program->module, &shader->program->interface};

@@ -33,6 +33,7 @@ void shading(CLI::App& command, Options& o) {
     command.add_flag("--blocks", o.blocks, "uniforms in std140 blocks");
     command.add_option("--binding-base", o.bindingBase, "number the bindings of blocks and textures from here")
         ->check(CLI::NonNegativeNumber);
+    command.add_option("--colorspace", o.colorspace, "the colour space that shading works in: lin_rec709, acescg, …");
     command.add_option("--unit", o.unit, "what a unit of distance is in the scene");
     command.add_option("--dump", o.dump,
                        "print the program after a stage: read, check, graph, lower, specialise, shade, interface, "

@@ -128,6 +128,7 @@ GenerateOptions Session::how() {
     how.blocks = options.blocks;
     how.bindingBase = options.bindingBase;
     how.unit = options.unit;
+    how.colorspace = options.colorspace;
     return how;
 }
 
