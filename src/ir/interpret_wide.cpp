@@ -13,9 +13,6 @@
 
 namespace shaderx::ir {
 
-float LaneWords::f(std::size_t i) const { return std::bit_cast<float>(lane[i]); }
-void LaneWords::set(std::size_t i, float v) { lane[i] = std::bit_cast<std::uint32_t>(v); }
-
 namespace {
 
 using Word = std::uint32_t;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -23,8 +24,8 @@ using LaneMask = std::uint64_t;
 struct alignas(64) LaneWords {
     std::uint32_t lane[kLanes] = {};
 
-    float f(std::size_t i) const;
-    void set(std::size_t i, float v);
+    float f(std::size_t i) const { return std::bit_cast<float>(lane[i]); }
+    void set(std::size_t i, float v) { lane[i] = std::bit_cast<std::uint32_t>(v); }
 };
 
 // Reads of one image at many places. What lanes that are not asked for hold is not defined.

@@ -9,13 +9,14 @@
 #include <new>
 #include <optional>
 #include <set>
-#include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "ir/interpret_wide.h"
 #include "oracle/raster.h"
 #include "oracle/texture.h"
+#include "oracle/threads.h"
 #include "scene/picture.h"
 #include "scene/sky.h"
 #include "scene/sphere.h"
@@ -277,25 +278,21 @@ struct PixelStage {
         return true;
     }
 
-    void work(Diagnostics& diagnostics) {
+    void work(Diagnostics& diagnostics, bool tells) {
         ir::WideInterpreter interpreter(program, {.maxSteps = std::uint64_t{1} << 40});
         PixelEnvironment environment(world, job, mesh, vertices);
         while (!failed) {
             const std::size_t batch = next++;
+            if (tells && job.progress) job.progress(std::min(batch, batches()), batches());
             if (batch >= batches()) return;
             if (!shade(batch, interpreter, environment, diagnostics)) failed = true;
         }
     }
 
     bool run(Diagnostics& diagnostics) {
-        const unsigned hardware = std::max(std::thread::hardware_concurrency(), 1u);
-        const std::size_t wanted = job.threads > 0 ? static_cast<std::size_t>(job.threads) : hardware;
-        const std::size_t count = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(batches(), 1));
+        const std::size_t count = threadCount(job.threads, batches());
         std::vector<Diagnostics> found(count);
-        std::vector<std::thread> threads;
-        for (std::size_t i = 1; i < count; i++) threads.emplace_back([this, &found, i] { work(found[i]); });
-        work(found[0]);
-        for (std::thread& t : threads) t.join();
+        runThreads(count, [&](std::size_t i) { work(found[i], i == 0); });
         for (const Diagnostics& d : found) {
             if (!d.hasErrors()) continue;
             for (const Diagnostic& one : d.all()) diagnostics.add(one.severity, one.code, one.message) = one;
@@ -322,7 +319,13 @@ struct Host {
     std::optional<Sky>& builtIn;  // filled by the first who needs it
     Diagnostics& diagnostics;
     World world = {};
-    std::map<std::string, std::shared_ptr<const Image>> files = {};  // null: cannot be read
+    // A file that textures are made of.
+    struct Picture {
+        std::shared_ptr<const Image> image = nullptr;  // none: cannot be read
+        Diagnostics reading = {};
+        bool isTold = false;
+    };
+    std::map<std::string, Picture> pictures = {};
 
     static Value valueOf(Type type, std::span<const float> values) {
         Value v;
@@ -391,20 +394,41 @@ struct Host {
         }
     }
 
+    // Reads the files that textures are made of, each once.
+    void readPictures() {
+        std::vector<std::pair<const std::string*, Picture*>> reads;
+        for (const scene::Texture& texture : job.textures)
+            if (!texture.file.empty()) {
+                const auto [at, isNew] = pictures.try_emplace(texture.file);
+                if (isNew) reads.emplace_back(&at->first, &at->second);
+            }
+        inThreads(reads.size(), [&](std::size_t i) {
+            Picture& picture = *reads[i].second;
+            if (const Result<Image> read = image::readImage(*reads[i].first, picture.reading))
+                picture.image = std::make_shared<const Image>(flipped(*read));
+        });
+    }
+
+    // Does pieces of work in the job's threads.
+    template <class Work>
+    void inThreads(std::size_t pieces, Work&& work) const {
+        std::atomic<std::size_t> next{0};
+        runThreads(threadCount(job.threads, pieces), [&](std::size_t) {
+            for (std::size_t i = next++; i < pieces; i = next++) work(i);
+        });
+    }
+
     const Image* pictureOf(const scene::Texture& texture) {
         if (texture.file.empty()) return nullptr;
-        const auto known = files.find(texture.file);
-        if (known != files.end()) return known->second.get();
-        Diagnostics reading;
-        const Result<Image> picture = image::readImage(texture.file, reading);
-        if (!picture)
-            for (const Diagnostic& d : reading.all()) {
+        Picture& picture = pictures.at(texture.file);
+        if (!picture.image && !std::exchange(picture.isTold, true))
+            for (const Diagnostic& d : picture.reading.all()) {
                 Diagnostic& warning =
                     diagnostics.warning("missing-texture", d.message + "; the node's default colour is drawn");
                 warning.where = d.where;
                 warning.path = texture.documentPath;
             }
-        return (files[texture.file] = picture ? std::make_shared<const Image>(flipped(*picture)) : nullptr).get();
+        return picture.image.get();
     }
 
     static std::shared_ptr<const Texture> plain(const float (&rgba)[4]) {
@@ -413,8 +437,7 @@ struct Host {
         return std::make_shared<const Texture>(one, false, Sampling{});
     }
 
-    std::shared_ptr<const Texture> textureOf(const scene::Texture& texture) {
-        const Image* picture = pictureOf(texture);
+    static std::shared_ptr<const Texture> textureOf(const scene::Texture& texture, const Image* picture) {
         if (!picture) return plain(texture.defaultColor);
         Sampling sampling{
             addressNamed(texture.uAddress), addressNamed(texture.vAddress), texture.filter == "closest", {}};
@@ -423,6 +446,13 @@ struct Host {
     }
 
     void loadTextures() {
+        struct Making {
+            const scene::Texture& from;
+            const Image* picture;
+            std::shared_ptr<const Texture>& to;
+        };
+        std::vector<Making> made;
+        readPictures();
         for (Name name : job.interface->pixelUniforms.uniforms) {
             const ir::Uniform* uniform = job.module->uniform(name);
             if (!uniform || uniform->type != Type::Texture2D) continue;
@@ -430,13 +460,14 @@ struct Host {
             const auto given = std::find_if(job.textures.begin(), job.textures.end(),
                                             [&](const scene::Texture& t) { return t.uniform == text; });
             if (given != job.textures.end()) {
-                world.textures[name] = textureOf(*given);
+                made.push_back({*given, pictureOf(*given), world.textures[name]});
                 continue;
             }
             diagnostics.warning("unbound-sampler",
                                 fmt::format("no picture is given for the sampler '{}': white is drawn", text));
             world.textures[name] = plain({1, 1, 1, 1});
         }
+        inThreads(made.size(), [&](std::size_t i) { made[i].to = textureOf(made[i].from, made[i].picture); });
     }
 
     bool makeWorld() {

@@ -2,6 +2,8 @@
 // interpolation as in draw/, shaded by the interpreter of the IR. Where the two pictures differ, one of them is wrong.
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <memory>
 
 #include "base/diagnostics.h"
@@ -17,7 +19,9 @@ struct RenderJob : scene::Settings {
     // A program whose stages are made. Must not change while it is drawn.
     const ir::Module* module = nullptr;
     const passes::ShaderInterface* interface = nullptr;
-    int threads = 0;  // 0: as many as the machine has; the picture does not depend on it
+    int threads = 0;  // 0: as many as the machine has cores; the picture does not depend on it
+    // Told now and then, on the caller's thread, how many of how many batches of pixels are shaded; may be empty.
+    std::function<void(std::size_t done, std::size_t all)> progress = {};
 };
 
 // What many pictures share: the sphere, and the built-in sky, made when a job first needs it. Serves one thread.

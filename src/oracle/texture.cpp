@@ -27,25 +27,31 @@ struct Between {
 // Keeps what no picture has from becoming an index: NaN and infinities count as 0.
 float finite(float v) { return std::fabs(v) < 1e9f ? v : 0; }
 
+// std::floor of what finite() leaves, without a call.
+float floorOf(float v) {
+    const float whole = static_cast<float>(static_cast<std::int32_t>(v));
+    return whole > v ? whole - 1 : whole;
+}
+
 // 0 … 1 … 0 as the coordinate grows.
 float mirrored(float v) {
-    const float part = v - 2 * std::floor(v * 0.5f);
+    const float part = v - 2 * floorOf(v * 0.5f);
     return part > 1 ? 2 - part : part;
 }
 
 Between between(Address address, float coordinate, int size) {
     const float n = static_cast<float>(size);
     coordinate = finite(coordinate);
-    if (address == Address::Periodic) coordinate -= std::floor(coordinate);
+    if (address == Address::Periodic) {
+        const float at = (coordinate - floorOf(coordinate)) * n - 0.5f, low = floorOf(at);
+        const int first = static_cast<int>(low), second = first + 1;
+        return {first < 0 ? size - 1 : first, second >= size ? 0 : second, at - low};
+    }
     if (address == Address::Mirror) coordinate = mirrored(coordinate);
-    float at = coordinate * n - 0.5f;
-    if (address != Address::Periodic) at = std::clamp(at, -1.0f, n);
-    const float low = std::floor(at);
+    const float at = std::clamp(coordinate * n - 0.5f, -1.0f, n), low = floorOf(at);
     Between out{static_cast<int>(low), static_cast<int>(low) + 1, at - low};
     for (int* i : {&out.first, &out.second}) {
-        if (address == Address::Periodic)
-            *i = *i < 0 ? size - 1 : *i >= size ? 0 : *i;
-        else if (address == Address::Constant)
+        if (address == Address::Constant)
             *i = *i < 0 || *i >= size ? kOutside : *i;
         else
             *i = std::clamp(*i, 0, size - 1);
@@ -55,7 +61,7 @@ Between between(Address address, float coordinate, int size) {
 
 int nearest(Address address, float coordinate, int size) {
     coordinate = finite(coordinate);
-    if (address == Address::Periodic) coordinate -= std::floor(coordinate);
+    if (address == Address::Periodic) coordinate -= floorOf(coordinate);
     if (address == Address::Mirror) coordinate = mirrored(coordinate);
     const float n = static_cast<float>(size);
     const int i = static_cast<int>(std::floor(std::clamp(coordinate * n, -1.0f, n)));
@@ -115,6 +121,21 @@ Colour Texture::texel(const Level& level, int x, int y) const {
 
 Colour Texture::linear(const Level& level, float u, float v, const Sampling& how) const {
     const Between x = between(how.u, u, level.width), y = between(how.v, v, level.height);
+    if (level.bytes.empty() && how.u != Address::Constant && how.v != Address::Constant) {
+        const auto at = [&](int column, int row) {
+            return &level.texels[(static_cast<std::size_t>(row) * static_cast<std::size_t>(level.width) +
+                                  static_cast<std::size_t>(column)) *
+                                 4];
+        };
+        const float *a = at(x.first, y.first), *b = at(x.second, y.first), *c = at(x.first, y.second),
+                    *d = at(x.second, y.second);
+        Colour out;
+        for (std::size_t k = 0; k < 4; k++) {
+            const float low = a[k] + x.weight * (b[k] - a[k]), high = c[k] + x.weight * (d[k] - c[k]);
+            out[k] = low + y.weight * (high - low);
+        }
+        return out;
+    }
     return mixed(mixed(texel(level, x.first, y.first), texel(level, x.second, y.first), x.weight),
                  mixed(texel(level, x.first, y.second), texel(level, x.second, y.second), x.weight), y.weight);
 }

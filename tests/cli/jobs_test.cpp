@@ -2,6 +2,8 @@
 // one.
 #include <map>
 
+#include <fcntl.h>
+
 #include "support.h"
 
 namespace shaderx::tests {
@@ -139,6 +141,58 @@ TEST(GenerateJobs, NoneIsOneACore) {
     EXPECT_EQ(all.files, one.files);
     for (const char* jobs : {"-1", "many", "2000"})
         EXPECT_EQ(leftBy(std::string("generate -o out --jobs ") + jobs + gold).exitCode, 2) << jobs;
+}
+
+// A material of three pictures that are not there.
+std::string drawing() {
+    return "draw --with interpreter --size 40 --samples 9 -o x.pfm" + inQuotes(testFolder("golden") / "textured.mtlx");
+}
+
+TEST(DrawJobs, TheInterpreterDrawsTheSamePicture) {
+    const fs::path examples = fs::path(SHADERX_SOURCE_DIR) / "examples";
+    for (const fs::path& f : {examples / "lacquered_wood.mtlx", examples / "peach.mtlx"}) {
+        const Left left = expectSame("draw --with interpreter --size 24 --samples 5 -o x.pfm" + inQuotes(f));
+        EXPECT_EQ(left.exitCode, 0) << left.errors;
+        EXPECT_EQ(left.files.size(), 1u);
+    }
+    EXPECT_NE(expectSame(drawing()).errors.find("[missing-texture]"), std::string::npos);
+    EXPECT_EQ(expectSame("draw --with interpreter -o x.pfm nowhere.mtlx").exitCode, 1);
+}
+
+TEST(DrawJobs, ProgressIsToldInLines) {
+    const Left silent = leftBy(drawing()), told = leftBy(drawing() + " --progress");
+    EXPECT_EQ(silent.errors.find("drawing:"), std::string::npos) << silent.errors;
+    EXPECT_NE(told.errors.find("drawing: 100 %\n"), std::string::npos) << told.errors;
+    EXPECT_EQ(told.files, silent.files);
+}
+
+// A terminal shows one line, which is gone in the end.
+TEST(DrawJobs, ProgressIsALineOnATerminal) {
+    const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+    if (terminal < 0 || ::grantpt(terminal) || ::unlockpt(terminal)) GTEST_SKIP() << "there are no terminals here";
+    const std::string other = ::ptsname(terminal);
+    const int kept = ::open(other.c_str(), O_RDWR | O_NOCTTY);  // so that what was written stays to be read
+    ASSERT_GE(kept, 0);
+    ASSERT_EQ(::fcntl(terminal, F_SETFL, O_NONBLOCK), 0);
+    const std::string gold = inQuotes(testFolder("golden") / "gold.mtlx");
+    const auto shownBy = [&](const std::string& options) {
+        OwnFolder own;
+        const std::string command = kProgram + " draw --with interpreter --jobs 1 -o x.pfm " + options + gold;
+        EXPECT_EQ(runCommand("sh -c \"" + command + " 2>" + other + "\"", own.path()).exitCode, 0);
+        std::string shown;
+        char buffer[4096];
+        for (ssize_t n; (n = ::read(terminal, buffer, sizeof buffer)) > 0;)
+            shown.append(buffer, static_cast<std::size_t>(n));
+        return shown;
+    };
+    const std::string shown = shownBy("--size 128 --samples 2048"), erased = "\r\033[K";
+    EXPECT_NE(shown.find("\rdrawing: "), std::string::npos) << shown;
+    EXPECT_NE(shown.find(" s left"), std::string::npos) << shown;
+    EXPECT_EQ(shown.find('\n'), std::string::npos) << shown;
+    ASSERT_GE(shown.size(), erased.size());
+    EXPECT_EQ(shown.substr(shown.size() - erased.size()), erased);
+    ::close(kept);
+    ::close(terminal);
 }
 
 }  // namespace

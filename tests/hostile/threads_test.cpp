@@ -1,5 +1,6 @@
-// Compilers of their own on threads of their own share nothing but the built-in library, which is read in place. Built
-// with ThreadSanitizer too (preset tsan).
+// Compilers of their own on threads of their own share nothing but the built-in library, which is read in place. So do
+// the program's own threads, and the interpreter's share what none writes. Built with ThreadSanitizer too (preset
+// tsan).
 #include <thread>
 
 #include "hostile.h"
@@ -48,6 +49,21 @@ TEST(Threads, GenerateTheSameAsOne) {
         threads.emplace_back([&, i] { found[i] = generateAll(jobs, i % 2 ? Interface::Baked : Interface::Live); });
     for (std::thread& t : threads) t.join();
     for (int i = 0; i < kThreads; i++) EXPECT_EQ(found[i], i % 2 ? baked : live) << "thread " << i;
+}
+
+// A race makes the program fail where ThreadSanitizer watches it; tests/cli/jobs_test compares what comes out.
+TEST(Threads, OfTheProgram) {
+    const std::string program = std::string("'") + SHADERX_PROGRAM + "'";
+    std::string files;
+    for (const fs::path& f : ownDocuments()) files += " '" + f.string() + "'";
+    const std::string wood = " '" + (fs::path(SHADERX_SOURCE_DIR) / "examples/lacquered_wood.mtlx").string() + "'";
+    for (const std::string& command :
+         {"generate --jobs 4 -o out" + files, std::string("generate --jobs 3 -o one") + wood,
+          "draw --with interpreter --jobs 4 --size 16 --samples 3 -o x.pfm" + wood}) {
+        OwnFolder own;
+        const Ran ran = runCommand(program + " " + command, own.path());
+        EXPECT_EQ(ran.exitCode, 0) << command << "\n" << ran.errors;
+    }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "apps/cli/progress.h"
 #include "apps/cli/session.h"
 #include "draw/loader.h"
 #include "oracle/loader.h"
@@ -92,7 +93,10 @@ int draw(const Options& options) {
     scene::Settings settings = settingsOf(options, s, file, *shader);
     Diagnostics diagnostics;
     if (options.with == "interpreter") {
+        Progress progress(options.progress);
         oracle::RenderJob job{std::move(settings), &shader->program->module, &shader->program->interface};
+        job.threads = options.jobs < 0 ? 0 : options.jobs;
+        job.progress = [&](std::size_t done, std::size_t all) { progress.at(done, all); };
         oracle::drawWithModule(job, diagnostics);
     } else {
         draw::Job job{std::move(settings), shader->vertex, shader->pixel};
