@@ -575,10 +575,6 @@ bool isUndefined(Op op, Type type, std::span<const Operand> operands) {
         const float v = asFloat(operands[0].words[0]);
         return !(v > -2147483904.0f && v < 2147483648.0f);
     }
-    if (op == Op::Index && operands[1].type == Type::Integer) {
-        const TypeInfo& from = info(operands[0].type);
-        return operands[1].words[0] >= (from.columns > 1 ? from.columns : from.rows);
-    }
     return false;
 }
 

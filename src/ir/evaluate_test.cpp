@@ -614,7 +614,7 @@ TEST(Evaluate, RefusesTypesThatDoNotFit) {
     refused(Op::Swizzle, Type::Float, {two2}, swizzleMask(2, 0, 1));
     refused(Op::Convert, Type::Float, {two2});
     refused(Op::Retype, Type::Integer, {number});
-    refused(Op::Index, Type::Float, {two3, valueOf(Type::Integer, {3})});
+    refused(Op::Index, Type::Float, {two3, number});
     refused(Op::Select, Type::Float, {number, number, number});
     for (Op op : kNotEvaluated) refused(op, Type::Float, {number, number, number});
 }

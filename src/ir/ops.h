@@ -8,9 +8,9 @@
 // Evaluation. Floats are IEEE binary32; operations may be contracted and reassociated where that changes rounding only.
 // Passes may assume that no value is NaN or infinite: x * 0 is 0, x - x is 0, x == x is true. What an operation gives
 // outside its domain (sqrt of a negative number, log of 0, pow of a negative base, division by 0, asin beyond 1,
-// normalize of 0) is not defined but never stops a program; min, max and clamp of a NaN give either operand. Two are
-// defined although languages leave them open: smoothstep between equal or falling edges is a step at the second, clamp
-// with low above high is high.
+// normalize of 0) is not defined but never stops a program; min, max and clamp of a NaN give either operand. Three
+// are defined although languages leave them open: smoothstep between equal or falling edges is a step at the second,
+// clamp with low above high is high, an index beyond the ends is that of the end.
 // Integers have 32 bits and wrap; division by 0 gives any value; shifts take the low 5 bits of their count. Conversion
 // of a float to an integer truncates, of a boolean to a number gives 0 or 1, of a number to a boolean compares with 0.
 // `select` evaluates what it needs; both sides are pure, so evaluating more is never wrong.

@@ -327,7 +327,7 @@ struct Simplifier {
             case Op::Index:
                 if (isVector(expr(x[0]).type) && isNumber(x[1])) {
                     int i = static_cast<int>(f().constantWords(x[1])[0]);
-                    if (i >= 0 && i < componentCount(expr(x[0]).type)) return b.component(x[0], i);
+                    return b.component(x[0], std::clamp(i, 0, componentCount(expr(x[0]).type) - 1));
                 }
                 return {};
             default:

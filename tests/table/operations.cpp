@@ -73,11 +73,6 @@ std::function<bool(Values, int)> definedness(Op op) {
         case Op::Div:
         case Op::Mod:
             return [](Values v, int i) { return hasIntegers(v) ? v[1].i(0) != 0 : at(v, 1, i) != 0; };
-        case Op::Index:
-            return [](Values v, int) {
-                const TypeInfo& t = info(v[0].type);
-                return v[1].i(0) >= 0 && v[1].i(0) < (t.columns > 1 ? t.columns : t.rows);
-            };
         default:
             return {};  // wherever its result is finite
     }
@@ -107,7 +102,7 @@ Domain domainOf(Op op, std::size_t k, Type type) {
             if (k == 2) d.edges.insert(d.edges.end(), {1e10f, -1e10f});
             return d;
         case Op::Index:
-            d.low = 0, d.high = 3;
+            d.low = -2, d.high = 5;
             return d;
         case Op::Pow:
             d.low = k ? -4 : 0;

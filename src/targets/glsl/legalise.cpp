@@ -115,7 +115,15 @@ struct Legaliser {
                             swizzleMask(componentCount(type), 0, 1, 2));
         if ((e.op == Op::Less || e.op == Op::LessEqual) && b.type(o[0]) == Type::Boolean)
             return b.append(e.op == Op::Less ? Op::And : Op::Or, type, {b.append(Op::Not, type, {o[0]}), o[1]});
+        if (e.op == Op::Index) return b.append(e.op, type, {o[0], within(o[1], info(from[from.operand(id, 0)].type))});
         return b.append(e.op, type, o, e.payload);
+    }
+
+    // An index that the language defines: of a component, or of a column of a matrix.
+    ExprId within(ExprId index, const TypeInfo& of) {
+        const std::int32_t last = (of.columns > 1 ? of.columns : of.rows) - 1;
+        if (!fresh.isConstant(index)) return b.append(Op::Clamp, Type::Integer, {index, integer(0), integer(last)});
+        return integer(std::clamp(static_cast<std::int32_t>(fresh.constantWords(index)[0]), 0, last));
     }
 
     // A part of what comes from outside in another role.
@@ -150,6 +158,11 @@ struct Legaliser {
     ExprId number(float v) {
         const std::uint32_t word = std::bit_cast<std::uint32_t>(v);
         return b.constant(Type::Float, std::span(&word, 1));
+    }
+
+    ExprId integer(std::int32_t v) {
+        const std::uint32_t word = static_cast<std::uint32_t>(v);
+        return b.constant(Type::Integer, std::span(&word, 1));
     }
 
     // How the edges of smoothstep and clamp lie, as far as constants say.
