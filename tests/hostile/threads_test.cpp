@@ -57,9 +57,8 @@ TEST(Threads, OfTheProgram) {
     std::string files;
     for (const fs::path& f : ownDocuments()) files += " '" + f.string() + "'";
     const std::string wood = " '" + (fs::path(SHADERX_SOURCE_DIR) / "examples/lacquered_wood.mtlx").string() + "'";
-    for (const std::string& command :
-         {"generate --jobs 4 -o out" + files, std::string("generate --jobs 3 -o one") + wood,
-          "draw --with interpreter --jobs 4 --size 16 --samples 3 -o x.pfm" + wood}) {
+    for (const std::string& command : {"generate --jobs 4 -o -" + files, std::string("generate --jobs 3 -o one") + wood,
+                                       "draw --with interpreter --jobs 4 --size 16 --samples 3 -o x.pfm" + wood}) {
         OwnFolder own;
         const Ran ran = runCommand(program + " " + command, own.path());
         EXPECT_EQ(ran.exitCode, 0) << command << "\n" << ran.errors;
