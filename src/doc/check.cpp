@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "doc/check_cycles.h"
+#include "doc/color_spaces.h"
 #include "doc/connect.h"
 #include "doc/values.h"
 
@@ -430,6 +431,7 @@ void Checker::run() {
         out.where = d.locate(e);
         out.path = d.path(e);
     }
+    reportUnknownColorSpaces(d, definitions, diagnostics);
     reportCycles(d, resolved, diagnostics);
     reportRecursiveDefinitions(d, definitions, resolved, diagnostics);
 }
@@ -495,6 +497,12 @@ std::vector<ElementId> renderableElements(const Document& d) {
         for (ElementId c : children(d, e))
             if (d[c].category == k.output) out.push_back(c);
     }
+    if (!out.empty()) return out;
+    // A document of definitions shows what they are for.
+    for (ElementId e : children(d, d.root()))
+        if (d[e].category == k.nodegraph)
+            for (ElementId c : children(d, e))
+                if (d[c].category == k.output) out.push_back(c);
     return out;
 }
 

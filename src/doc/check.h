@@ -17,7 +17,8 @@ namespace shaderx::doc {
 bool validate(const Document& document, const Definitions& definitions, Diagnostics& diagnostics);
 
 // What can be rendered: all material nodes of the document; if there is none,
-// all outputs of the document and of its nodegraphs, but for graphs that implement a nodedef. In document order.
+// all outputs of the document and of its nodegraphs, but for graphs that implement a nodedef; if there is none of these
+// either, the outputs of those graphs. In document order.
 std::vector<ElementId> renderableElements(const Document& document);
 
 // True if the nodegraph is the implementation of a nodedef (in this document's own words).

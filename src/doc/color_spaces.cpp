@@ -168,6 +168,31 @@ std::string_view ColorSpaces::nearest(std::string_view name) const {
     return {};
 }
 
+void warnUnknownColorSpace(const Document& d, ElementId element, std::string_view workingSpace, std::string_view near,
+                           Diagnostics& diagnostics) {
+    Diagnostic& w = diagnostics.warning(
+        "unknown-colorspace", fmt::format("there is no colour space '{}'; its colours are taken to be in '{}'",
+                                          d.attributeText(element, d.known().colorspace), workingSpace));
+    if (!near.empty()) w.hint = fmt::format("did you mean '{}'?", near);
+    w.where = d.locate(element, d.known().colorspace);
+    w.path = d.path(element);
+}
+
+void reportUnknownColorSpaces(const Document& d, const Definitions& definitions, Diagnostics& diagnostics) {
+    constexpr std::string_view kWorking = "lin_rec709";
+    const Name word = d.known().colorspace, usual = d.names().find(kWorking);
+    const std::vector<const Document*> documents = definitions.documents();
+    ColorSpaces spaces(documents);
+    for (std::uint32_t i = 0; i < d.size(); i++) {
+        const ElementId e(i);
+        const Name said = d[e].category ? d.attribute(e, word) : Name();
+        if (!said || said == usual || d.text(said).empty() || spaces.find(d.text(said))) continue;
+        const Name node = d.names().find(fmt::format("{}_to_{}", d.text(said), kWorking));
+        if (node && definitions.hasCategory(node)) continue;
+        warnUnknownColorSpace(d, e, kWorking, spaces.nearest(d.text(said)), diagnostics);
+    }
+}
+
 Matrix3 matrixBetween(const ColorSpace& from, const ColorSpace& to) {
     return from.toXyz == to.toXyz ? kIdentity : product(inverse(to.toXyz), from.toXyz);
 }

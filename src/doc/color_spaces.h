@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "doc/definitions.h"
 #include "doc/document.h"
 
 namespace shaderx::doc {
@@ -45,6 +46,13 @@ class ColorSpaces {
     const std::vector<const Document*>& documents_;
     std::unordered_map<std::string, std::optional<ColorSpace>> found_;  // by name as asked for
 };
+
+// Warns (unknown-colorspace) of a space that an element says; `near` is the name that it may mean, or none.
+void warnUnknownColorSpace(const Document& document, ElementId element, std::string_view workingSpace,
+                           std::string_view near, Diagnostics& diagnostics);
+// Warns of all unknown spaces that elements of a document say. `definitions` may have nodes X_to_lin_rec709 for a space
+// X.
+void reportUnknownColorSpaces(const Document& document, const Definitions& definitions, Diagnostics& diagnostics);
 
 // Takes linear values of one space to linear values of another; the identity where their primaries are one's.
 Matrix3 matrixBetween(const ColorSpace& from, const ColorSpace& to);

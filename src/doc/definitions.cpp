@@ -226,6 +226,12 @@ bool Definitions::hasCategory(Name category, Name space) const {
                        [&](const Layer& layer) { return !range(layer, category).empty(); });
 }
 
+std::vector<const Document*> Definitions::documents() const {
+    std::vector<const Document*> all;
+    for (const Layer& layer : layers_) all.push_back(layer.document);
+    return all;
+}
+
 std::vector<Name> Definitions::categories() const {
     std::vector<Name> out;
     for (const Layer& layer : layers_)

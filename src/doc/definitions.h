@@ -145,6 +145,8 @@ class Definitions {
     const Port* input(NodeDef def, Name name) const;
     const Port* output(NodeDef def, Name name) const;
 
+    // The documents in the order of their layers.
+    std::vector<const Document*> documents() const;
     // What implements a nodedef: in each document in turn, one for the first of the targets that has one, else a
     // portable one; those of the nodedef go before category-wide ones; then what the inherited nodedef has.
     Implementation implementation(NodeDef def, std::span<const Name> targets = {}) const;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "doc/color_spaces.h"
 #include "graph/values.h"
 
 namespace shaderx::graph {
@@ -562,14 +563,8 @@ struct Lowerer {
     // Said once for each element that says the space.
     void unknownSpace(const SaidSpace& said) {
         if (!told.insert(said.by).second) return;
-        const std::string_view name = d.text(said.name);
-        Diagnostic& w = diagnostics.warning(
-            "unknown-colorspace", fmt::format("there is no colour space '{}'; its colours are taken to be in '{}'",
-                                              name, options.scene.colorspace));
-        if (std::string_view near = bodies.nearestColorSpace(name); !near.empty())
-            w.hint = fmt::format("did you mean '{}'?", near);
-        w.where = d.locate(said.by, d.known().colorspace);
-        w.path = d.path(said.by);
+        doc::warnUnknownColorSpace(d, said.by, options.scene.colorspace, bodies.nearestColorSpace(d.text(said.name)),
+                                   diagnostics);
     }
 
     // A value that the document gives in a unit, in that of the scene.
