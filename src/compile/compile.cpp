@@ -71,6 +71,12 @@ struct Compiler::State {
             return true;
         return false;
     }
+    // Of the libraries alone.
+    doc::Definitions definitions() const {
+        doc::Definitions all;
+        for (Library* l : libraries()) all.add(l->document(), l->index());
+        return all;
+    }
     doc::Definitions definitions(const doc::Document& document) const {
         doc::Definitions all;
         all.add(document);
@@ -123,7 +129,8 @@ std::unique_ptr<doc::Document> Compiler::read(std::string_view file, std::string
     auto document = newDocument();
     bool ok = guarded(diagnostics, "read", [&] {
         if (!doc::read(*document, file, std::move(text), resolver, diagnostics, limits)) return false;
-        doc::upgrade(*document, diagnostics);
+        doc::Definitions libraries = state_->definitions();
+        doc::upgrade(*document, diagnostics, {&libraries, nullptr});
         return true;
     });
     return ok ? std::move(document) : nullptr;

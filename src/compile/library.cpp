@@ -4,6 +4,7 @@
 #include <map>
 
 #include "doc/read.h"
+#include "doc/upgrade.h"
 #include "passes/specialise.h"
 
 namespace shaderx {
@@ -45,6 +46,9 @@ class TextLibrary final : public Library {
         root += "</materialx>\n";
         auto read = doc::read(document_, "library", std::move(root), own, diagnostics);
         (void)read;  // every error is in the diagnostics
+        doc::Definitions others;
+        for (Library* l : below) others.add(l->document(), l->index());
+        doc::upgrade(document_, diagnostics, {&others, nullptr});
         tables_ = doc::buildIndex(document_);
         std::vector<sl::SourceFile> sources;
         for (const LibraryFile& f : files)

@@ -228,6 +228,22 @@ ElementId Document::append(ElementId parent, std::string_view category, std::str
     return id;
 }
 
+ElementId Document::insertAfter(ElementId sibling, std::string_view category, std::string_view name) {
+    if (!mayEdit(sibling)) return {};
+    ElementId parent = ownElements_[sibling.index].parent;
+    if (!parent) {  // the root, or a comment beside it
+        badEdits_++;
+        return {};
+    }
+    ElementId last = lastChild_[parent.index], id = append(parent, category, name);
+    if (last == sibling) return id;
+    ownElements_[last.index].next = {};
+    ownElements_[id.index].next = ownElements_[sibling.index].next;
+    ownElements_[sibling.index].next = id;
+    lastChild_[parent.index] = last;
+    return id;
+}
+
 void Document::set(ElementId id, std::string_view attr, std::string_view value) {
     set(id, names_.intern(attr), names_.intern(value));
 }

@@ -119,6 +119,8 @@ class Document {
     // Editing; an internal error on a view. New children go last; set() on "name" renames. Editing an element that the
     // document does not have changes nothing, but is counted: such a document is not what its maker meant.
     ElementId append(ElementId parent, std::string_view category, std::string_view name = {});
+    // The same right after a sibling, which is not the root.
+    ElementId insertAfter(ElementId sibling, std::string_view category, std::string_view name = {});
     void set(ElementId id, std::string_view attr, std::string_view value);
     void set(ElementId id, Name attr, Name value);
     void unset(ElementId id, Name attr);

@@ -227,9 +227,8 @@ bool Reader::checkRoot(std::uint32_t source, pugi::xml_node root) {
                   source, offsetOf(n));
             return false;
         }
-    pugi::xml_attribute version = root.attribute("version");
-    if (!version) return true;  // taken for the newest
-    std::string_view text = version.value();
+    std::string_view text = root.attribute("version").value();
+    if (text.empty()) return true;  // the upgrade tells by what the file contains
     std::size_t dot = text.find('.');
     bool good = dot != std::string_view::npos && parseInt(text.substr(0, dot)) && parseInt(text.substr(dot + 1));
     if (good && text.starts_with("1.")) {
