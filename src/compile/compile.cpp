@@ -125,12 +125,13 @@ bool Compiler::addLibrary(std::vector<LibraryFile> files, Diagnostics& diagnosti
 }
 
 std::unique_ptr<doc::Document> Compiler::read(std::string_view file, std::string text, doc::Resolver& resolver,
-                                              Diagnostics& diagnostics, const doc::ReadOptions& limits) {
+                                              Diagnostics& diagnostics, const doc::ReadOptions& limits,
+                                              std::vector<doc::Edit>* edits) {
     auto document = newDocument();
     bool ok = guarded(diagnostics, "read", [&] {
         if (!doc::read(*document, file, std::move(text), resolver, diagnostics, limits)) return false;
         doc::Definitions libraries = state_->definitions();
-        doc::upgrade(*document, diagnostics, {&libraries, nullptr});
+        doc::upgrade(*document, diagnostics, {&libraries, edits});
         return true;
     });
     return ok ? std::move(document) : nullptr;

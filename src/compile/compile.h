@@ -30,6 +30,7 @@
 #include "doc/color_spaces.h"
 #include "doc/document.h"
 #include "doc/read.h"
+#include "doc/upgrade.h"
 #include "graph/lower.h"
 #include "passes/cost.h"
 #include "passes/lobes.h"
@@ -181,9 +182,11 @@ class Compiler {
     NameTable& names();
     // An empty document.
     std::unique_ptr<doc::Document> newDocument();
-    // Reads a document and what it includes, and brings it to the current version. Null after errors.
+    // Reads a document and what it includes, and brings it to the current version; `edits` takes up what that changed.
+    // Null after errors.
     std::unique_ptr<doc::Document> read(std::string_view file, std::string text, doc::Resolver& resolver,
-                                        Diagnostics& diagnostics, const doc::ReadOptions& limits = {});
+                                        Diagnostics& diagnostics, const doc::ReadOptions& limits = {},
+                                        std::vector<doc::Edit>* edits = nullptr);
     // Reports every mistake of a document.
     bool validate(const doc::Document& document, Diagnostics& diagnostics);
     // A colour space of the libraries, by name or alias; none where there is none of that name.

@@ -66,10 +66,10 @@ void channels(Upgrader& u, ElementId port) {
     if (c.target) from = u.type(c.target);
     if (from == "multioutput") from = u.category(c.target).starts_with("separate") ? "float" : "";
     if (!componentCount(from))
-        return u.warn(port,
-                      fmt::format("the channels '{}' cannot be upgraded: what they are taken from is not known",
-                                  u.text(letters)),
-                      u.k.channels);
+        return u.warn(
+            port,
+            fmt::format("the channels '{}' cannot be upgraded: what they are taken from is not known", u.text(letters)),
+            u.k.channels);
     bool isOutput = d[port].category == u.k.output;
     ElementId beside = isOutput ? port : d[port].parent;
     u.edited(port, fmt::format("channels '{}'", u.text(letters)), "a node that takes these");

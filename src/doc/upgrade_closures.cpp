@@ -94,11 +94,13 @@ void readIndices(Upgrader& u, ElementId port) {
     Document& d = u.d;
     if (d[port].category == u.k.output && u.category(d[port].parent) == "artistic_ior" && u.type(port) == "vector3")
         return d.set(port, "type", "color3");
-    if (d[port].category != u.k.input || !d.attribute(port, u.k.output) || u.type(port) != "vector3") return;
+    bool isPort = d[port].category == u.k.input || d[port].category == u.k.output;
+    if (!isPort || !d.attribute(port, u.k.output) || u.type(port) != "vector3") return;
     ElementId from = connection(d, port).target, owner = d[port].parent;
     if (!from || u.category(from) != "artistic_ior") return;
     u.edited(port, "type 'vector3'", "type 'color3', as artistic_ior gives");
     if (u.category(owner) == "conductor_bsdf") return d.set(port, "type", "color3");
+    if (d[port].category == u.k.output) owner = port;
     ElementId between = u.addNode(owner, "convert", fmt::format("{}_vector", u.text(d[port].name)), "vector3");
     d.set(u.copyInput(port, between, "in"), "type", "color3");
     u.redirect(port, between);

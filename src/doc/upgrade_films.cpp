@@ -204,7 +204,8 @@ void Films::resolve(ElementId layerNode) {
     bool isLost = found.isOpen;
     for (ElementId leaf : found.leaves) {
         if (u.input(leaf, "thinfilm_thickness")) continue;  // a nearer film
-        bool done = coat(filmNode, leaf, "thickness", "thinfilm_thickness") && coat(filmNode, leaf, "ior", "thinfilm_ior");
+        bool done =
+            coat(filmNode, leaf, "thickness", "thinfilm_thickness") && coat(filmNode, leaf, "ior", "thinfilm_ior");
         if (done) u.edited(leaf, u.tag(leaf), u.tag(leaf) + " with the film's inputs");
         isLost |= !done;
     }
@@ -224,7 +225,8 @@ void Films::run() {
     for (ElementId e : used)
         if (!readers.contains(e)) d.remove(e);
     u.each(kNewestMinor, [&](ElementId e) {
-        if (d[e].category == film && isNode(d, e)) u.warn(e, "this thin film lies on nothing: 1.39 has no such closure");
+        if (d[e].category == film && isNode(d, e))
+            u.warn(e, "this thin film lies on nothing: 1.39 has no such closure");
     });
 }
 
@@ -232,7 +234,7 @@ void Films::run() {
 
 void upgradeFilms(Upgrader& u) {
     Name film = u.d.names().find("thin_film_bsdf"), layer = u.d.names().find("layer");
-    if (!film || !layer) return;
+    if (!film) return;
     bool any = false;
     u.each(kNewestMinor, [&](ElementId e) { any |= u.d[e].category == film; });
     if (!any) return;

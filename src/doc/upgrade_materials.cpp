@@ -10,8 +10,8 @@ namespace shaderx::doc {
 
 namespace {
 
-// A shader of a material: what declares it, in the material itself or in one that it inherits from, with the bindings of
-// all of these; the nearer ones replace others of their name.
+// A shader of a material: what declares it, in the material itself or in one that it inherits from, with the bindings
+// of all of these; the nearer ones replace others of their name.
 struct Use {
     ElementId reference;
     std::vector<ElementId> bindings{};
@@ -100,7 +100,8 @@ std::vector<ElementId> Materials::chain(ElementId material) {
         if (u.text(from).empty()) break;
         ElementId next = d.childFrom(at, d.root(), from);
         if (!next || next.index >= isOld.size() || !isOld[next.index]) {
-            u.warn(at, fmt::format("there is no material '{}' of before 1.38 to inherit from", u.text(from)), k.inherit);
+            u.warn(at, fmt::format("there is no material '{}' of before 1.38 to inherit from", u.text(from)),
+                   k.inherit);
             break;
         }
         at = next;
@@ -196,7 +197,8 @@ ElementId Materials::makeShader(ElementId material, ElementId after, const Use& 
     std::string own(u.text(name));
     if (own.empty()) own = fmt::format("{}_shader", u.text(d[material].name));
     own = u.text(d.qualified(d.namespaceOf(material), d.names().intern(own)));
-    if (d.child(d.root(), own)) own = u.freeName(d.root(), fmt::format("{}_{}", u.text(d[material].name), u.text(name)));
+    if (d.child(d.root(), own))
+        own = u.freeName(d.root(), fmt::format("{}_{}", u.text(d[material].name), u.text(name)));
     ElementId shader;
     if (m.shader) {
         shader = u.copyTree(m.shader, {}, after, own);
@@ -231,7 +233,8 @@ void Materials::overrideShader(ElementId material, ElementId& shader, const Use&
             }
     }
     if (found.empty()) return;
-    if (shader == m.shader) shader = makeShader(material, material, use, m);  // others go on to use the <shader> as it is
+    if (shader == m.shader)
+        shader = makeShader(material, material, use, m);  // others go on to use the <shader> as it is
     if (!shader) return;
     for (auto [port, by] : found) {
         if (use.places.contains(d[port].name)) continue;  // bound
@@ -338,8 +341,8 @@ void Materials::spendOverrides(ElementId material) {
         if (isUsed[i])
             spent.push_back(overrides[i]);
         else
-            u.warn(overrides[i],
-                   fmt::format("nothing that the material uses has the public name '{}'", u.text(d[overrides[i]].name)));
+            u.warn(overrides[i], fmt::format("nothing that the material uses has the public name '{}'",
+                                             u.text(d[overrides[i]].name)));
     }
 }
 

@@ -78,6 +78,7 @@ void geomprop(Upgrader& u, ElementId e) {
         u.addValue(e, "geomprop", "string", given);
         u.edited(e, fmt::format("attribute '{}'", attribute), "input 'geomprop'");
     }
+    u.renameInput(e, "attrname", "geomprop");
     bool isText = u.type(e) == "string" || u.type(e) == "filename";
     if (isText)
         u.become(e, "geompropvalueuniform");
@@ -143,9 +144,12 @@ void normalmap(Upgrader& u, ElementId e) {
     bitangent(u, e);
 }
 
-void gone(Upgrader& u, ElementId e) {
-    u.warn(e, fmt::format("<{}> has no counterpart in 1.39", u.category(e)));
+// `metallic` was `metalness` in the first library that had it.
+void usdPreviewSurface(Upgrader& u, ElementId e) {
+    if (!u.input(e, "metallic")) u.renameInput(e, "metalness", "metallic");
 }
+
+void gone(Upgrader& u, ElementId e) { u.warn(e, fmt::format("<{}> has no counterpart in 1.39", u.category(e))); }
 
 // The back of a surface of two sides is an input of the material: see upgradeBacks.
 void thinSurface(Upgrader& u, ElementId e) {
@@ -179,6 +183,7 @@ constexpr NodeRule kRules[] = {
     {"separate", 37, separate},
     {"geomattrvalue", 37, geomprop},
     {"switch", 37, switchOfBoolean},
+    {"UsdPreviewSurface", 38, usdPreviewSurface},
     {"complex_ior", 38, gone},
     {"backfacing", 38, gone},
     {"fresnel", 38, gone},

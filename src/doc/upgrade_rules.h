@@ -26,8 +26,8 @@ struct Upgrader {
     std::vector<int> minors{};  // the minor version of each source
     int rootMinor = kNewestMinor, oldest = kNewestMinor;
     std::vector<std::pair<ElementId, ElementId>> backs{};  // surfaces whose back is another surface
-    std::unordered_map<std::uint64_t, int> numbers{};  // by scope and name: the next that freeName tries
-    std::size_t copiesLeft = 0;  // how many elements may still be copied: see copyTree
+    std::unordered_map<std::uint64_t, int> numbers{};      // by scope and name: the next that freeName tries
+    std::size_t copiesLeft = 0;                            // how many elements may still be copied: see copyTree
 
     std::string_view text(Name n) const { return d.text(n); }
     std::string_view category(ElementId e) const { return text(d[e].category); }

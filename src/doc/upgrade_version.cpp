@@ -53,8 +53,8 @@ constexpr Mark kCategories[] = {
 };
 
 constexpr Mark kAttributes[] = {
-    {"shadername", 23},  {"graphname", 24},  {"opgraph", 26},  {"graphoutput", 26}, {"shaderprogram", 26},
-    {"shadertype", 33},  {"publicname", 35}, {"attrname", 36}, {"channels", 38},
+    {"shadername", 23}, {"graphname", 24},  {"opgraph", 26},  {"graphoutput", 26}, {"shaderprogram", 26},
+    {"shadertype", 33}, {"publicname", 35}, {"attrname", 36}, {"channels", 38},
 };
 
 constexpr Mark kTypes[] = {{"vector", 22}, {"opgraphnode", 26}, {"matrix", 34}, {"color2", 37}};
@@ -108,7 +108,8 @@ struct Detective {
             lower(minor, attributes, a.name);
         }
         if (element.category == u.k.nodedef && d.attribute(e, u.k.type)) minor = std::min(minor, 36);
-        if (element.category != u.k.input || !element.parent) return;
+        bool isInput = element.category == u.k.input || element.category == u.k.parameter;
+        if (!isInput || !element.parent) return;
         for (const InputMark& m : kInputs)
             if (d.text(element.name) == m.input && d.text(d[element.parent].category) == m.node)
                 minor = std::min(minor, m.last);

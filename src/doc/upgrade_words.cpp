@@ -107,11 +107,25 @@ void words34(Upgrader& u, ElementId e) {
     collect(u, e);
 }
 
+// Scaled texture coordinates about a center of (0.5, 0.5).
+void scale(Upgrader& u, ElementId e) {
+    u.become(e, "place2d");
+    u.renameInput(e, "in", "texcoord");
+    u.renameInput(e, "center", "pivot");
+    if (!u.input(e, "pivot")) u.addValue(e, "pivot", "vector2", "0.5, 0.5");
+    u.renameInput(e, "amount", "scale");
+    ElementId amount = u.input(e, "scale");
+    if (amount && u.type(amount) == "float" && !u.isConnected(amount))
+        u.d.set(amount, "value", fmt::format("{0}, {0}", u.value(amount)));
+    u.retype(e, "scale", "float", "vector2");
+}
+
 // Nodes that 1.36 renamed.
 void nodes35(Upgrader& u, ElementId e) {
     std::string_view c = u.category(e);
     if (c == "mix") u.renameInput(e, "mask", "mix");
     if (c == "exponent") u.become(e, "power");
+    if (c == "scale" && u.type(e) == "vector2") scale(u, e);
     if (c == "pack") u.become(e, "combine");
     if (c == "hueshift") {
         ElementId amount = u.input(e, "amount");
@@ -202,7 +216,27 @@ void color2Swizzle(Upgrader& u, ElementId e) {
     if (in && letters && u.type(in) == "color2") u.d.set(letters, "value", vector2Letters(u.value(letters)));
 }
 
+// Two color2 made a color4, which two vector2 do not.
+void combineColor2(Upgrader& u, ElementId e) {
+    ElementId in1 = u.input(e, "in1"), in2 = u.input(e, "in2");
+    if (u.type(e) != "color4" || !in1 || !in2 || u.type(in1) != "color2" || u.type(in2) != "color2") return;
+    Document& d = u.d;
+    ElementId parts = u.addNode(e, "combine2", "vector", "vector4");
+    for (ElementId in : {in1, in2}) {
+        d.set(u.copyInput(in, parts, u.text(d[in].name)), "type", "vector2");
+        d.remove(in);
+    }
+    u.become(e, "convert");
+    u.connect(e, "in", "vector4", parts);
+}
+
 void color2(Upgrader& u, ElementId e) {
+    std::string_view c = u.category(e);
+    if (c == "combine" || c == "combine2") combineColor2(u, e);
+    ElementId in = c == "convert" && u.type(e) == "color2" ? u.input(e, "in") : ElementId();
+    if (in && (u.type(in) == "color2" || u.type(in) == "vector2")) u.become(e, "dot");
+    in = c == "convert" && u.type(e) == "vector2" ? u.input(e, "in") : ElementId();
+    if (in && u.type(in) == "color2") u.become(e, "dot");
     replaceType(u, e, "color2", "vector2");
     if (u.d.attributeText(e, u.k.nodedef).find("color2") != std::string_view::npos && isNode(u.d, e)) {
         u.edited(e, "a nodedef of color2", "the one that fits");

@@ -25,6 +25,8 @@ struct Options {
     bool progress = false;
     // of inspect
     bool lobes = false, cost = false, json = false;
+    // of upgrade
+    bool explain = false;
     // of eval
     std::string function;
     std::vector<std::string> arguments;
@@ -34,6 +36,7 @@ int generate(const Options& options);
 int validate(const Options& options);
 int draw(const Options& options);
 int inspect(const Options& options);
+int upgrade(const Options& options);
 int showIr(const Options& options);
 int evaluate(const Options& options);
 

@@ -78,6 +78,15 @@ void inspecting(CLI::App& command, Options& o) {
     common(command, o);
 }
 
+void upgrading(CLI::App& command, Options& o) {
+    o.out = "-";
+    command.add_option("FILE", o.files, "documents; - is standard input")->required();
+    command.add_option("-o,--out", o.out,
+                       "the file, or for several documents the folder, to write to; default: standard output");
+    command.add_flag("--explain", o.explain, "list each change with its line on standard error");
+    common(command, o);
+}
+
 void evaluating(CLI::App& command, Options& o) {
     command.add_option("FILE", o.files, "the text; - is standard input")
         ->required()
@@ -110,6 +119,9 @@ int main(int argc, char** argv) {
     CLI::App* inspect = app.add_subcommand("inspect", "say why the shaders of documents are as they are");
     if (named("inspect")) inspecting(*inspect, o);
 
+    CLI::App* upgrade = app.add_subcommand("upgrade", "write documents of older versions anew as ones of 1.39");
+    if (named("upgrade")) upgrading(*upgrade, o);
+
     CLI::App* ir = app.add_subcommand("ir", "check a program in the text form of the IR and print it");
     if (named("ir")) ir->add_option("FILE", o.files, "the text; - is standard input")->required()->expected(1);
 
@@ -124,6 +136,7 @@ int main(int argc, char** argv) {
     if (*generate) return shaderx::cli::generate(o);
     if (*validate) return shaderx::cli::validate(o);
     if (*inspect) return shaderx::cli::inspect(o);
+    if (*upgrade) return shaderx::cli::upgrade(o);
     if (*ir) return shaderx::cli::showIr(o);
     if (*eval) return shaderx::cli::evaluate(o);
     return shaderx::cli::draw(o);
