@@ -136,8 +136,25 @@ color hair_seen(vector u, float sine, float cuticle_angle, float times, float mi
     return microfacet_lookup(environment_direction(hair_world(light, azimuth, x, y, N)), level, 1.0);
 }
 
+// Light from around the fibre, as what is mirrored more than once inside leaves it: four directions of its ring.
+color hair_around(float sine, vector2 roughness, vector x, vector y, vector N)
+{
+    vector2 r = hair_roughness(roughness);
+    // The mean of the inclination's sine, as hair_direction draws it.
+    float e = exp(-2.0 / r.x);
+    float mean = ((1.0 + e) / (1.0 - e) - r.x) * -sine;
+    float level = environment_mips - 2.5 - 0.5 * log2(0.25 / sqrt(r.x));
+    color sum = color(0.0);
+    for (int i = 0; i < 4; i++)
+    {
+        vector L = hair_world(vector2(mean, 1.57079633 * i), 0.785398163, x, y, N);
+        sum += microfacet_lookup(environment_direction(L), level, 1.0);
+    }
+    return 0.25 * sum;
+}
+
 // Every lobe is sampled as its light is distributed, so that a white world is seen through what is left of the light,
-// at any number of samples. What is mirrored more than once inside leaves to all sides. Nothing passes to layers below.
+// at any number of samples. Nothing passes to layers below.
 void chiang_hair_bsdf_environment(color tint_R, color tint_TT, color tint_TRT, float ior, vector2 roughness_R,
                                   vector2 roughness_TT, vector2 roughness_TRT, float cuticle_angle,
                                   vector absorption_coefficient, vector curve_direction, vector N, vector V,
@@ -169,7 +186,7 @@ void chiang_hair_bsdf_environment(color tint_R, color tint_TT, color tint_TRT, f
         back += hair_seen(u, sine, cuticle_angle, -4.0, hair_middle(2.0, outside, inside), roughness_TRT, azimuth, x, y,
                           N);
     }
-    color around = 0.5 * (irradiance(N) + irradiance(-N));
+    color around = hair_around(sine, roughness_TRT, x, y, N);
     color seen = max(tint_R, 0.0) * R * mirrored + max(tint_TT, 0.0) * TT * through + max(tint_TRT, 0.0) * TRT * back;
     radiance = seen / environment_samples + max(tint_TRT, 0.0) * rest * around;
     albedo = color(1.0);
@@ -212,7 +229,7 @@ void chiang_hair_bsdf_environment_prefiltered(color tint_R, color tint_TT, color
         hair_blurred(sine, cuticle_angle, -1.0, hair_middle(1.0, outside, inside), roughness_TT, azimuth, x, y, N);
     color back =
         hair_blurred(sine, cuticle_angle, -4.0, hair_middle(2.0, outside, inside), roughness_TRT, azimuth, x, y, N);
-    color around = 0.5 * (irradiance(N) + irradiance(-N));
+    color around = hair_around(sine, roughness_TRT, x, y, N);
     radiance = max(tint_R, 0.0) * R * mirrored + max(tint_TT, 0.0) * TT * through +
                max(tint_TRT, 0.0) * (TRT * back + rest * around);
     albedo = color(1.0);

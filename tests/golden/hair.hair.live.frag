@@ -8,7 +8,6 @@ uniform float u_envLightIntensity = 1.0;
 uniform int u_envRadianceMips = 1;
 uniform int u_envRadianceSamples = 16;
 uniform sampler2D u_envRadiance;
-uniform sampler2D u_envIrradiance;
 
 uniform float roughness_longitudinal = 0.3;
 uniform float roughness_azimuthal = 0.4;
@@ -103,6 +102,28 @@ vec3 hair_seen(vec3 u, float sine, float cuticle_angle, float times, float middl
 	return environment_lookup(u_envRadiance, d, whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0));
 }
 
+// Light from around the fibre, as what is mirrored more than once inside leaves it: four directions of its ring.
+vec3 hair_around(float sine, vec2 roughness, vec3 x, vec3 y, vec3 N)
+{
+	float x2 = clamp(roughness, 0.001, 1.0).x;
+	float e = exp(-2.0 / x2);
+	float mean = ((e + 1.0) / (1.0 - e) - x2) * -sine;
+	float level = float(u_envRadianceMips) - 2.5 - 0.5 * log2(0.25 / sqrt(x2));
+	vec3 v = x * mean;
+	float x3 = sqrt(max(1.0 - mean * mean, 0.0));
+	vec3 sum = vec3(0);
+	for (int i = 0; i < 4; i++)
+	{
+		float turn = 1.5707964 * float(i) + 0.7853982;
+		vec3 d = mat3(u_envMatrix) * (v + x3 * (y * cos(turn) + N * sin(turn)));
+		float best = max(level - 0.25 * log2(1.00001 - d.y * d.y), 0.0);
+		float whole = floor(best);
+		vec3 v2 = environment_lookup(u_envRadiance, d, whole + clamp(32.0 * (best - whole) - 15.5, 0.0, 1.0));
+		sum += v2;
+	}
+	return 0.25 * sum;
+}
+
 // Every lobe is sampled as its light is distributed, so that a white world is seen through what is left of the light,
 // at any number of samples.
 vec3 chiang_hair_bsdf_environment(vec2 roughness_R, vec2 roughness_TT, vec2 roughness_TRT, float cuticle_angle, vec3 absorption_coefficient, vec3 curve_direction, vec3 N, vec3 V)
@@ -134,9 +155,8 @@ vec3 chiang_hair_bsdf_environment(vec2 roughness_R, vec2 roughness_TT, vec2 roug
 		through += hair_seen(u, sine, cuticle_angle, -1.0, middle, roughness_TT, azimuth, x, y, N);
 		back += hair_seen(u, sine, cuticle_angle, -4.0, middle2, roughness_TRT, azimuth, x, y, N);
 	}
-	vec3 v2 = environment_lookup(u_envIrradiance, mat3(u_envMatrix) * -N, 0.0);
-	vec3 v3 = rest * (0.5 * (environment_lookup(u_envIrradiance, mat3(u_envMatrix) * N, 0.0) + v2));
-	return (R * mirrored + TT * through + TRT * back) / x2 + v3;
+	vec3 v2 = (R * mirrored + TT * through + TRT * back) / x2;
+	return v2 + rest * hair_around(sine, roughness_TRT, x, y, N);
 }
 
 void main()

@@ -318,6 +318,26 @@ TEST_P(Physics, ReciprocalButForTheView) {
     }
 }
 
+// What a fibre shows of a world that is not alike on all sides is the integral of the light times eval.
+TEST_P(Physics, HairShowsTheIntegral) {
+    const Form& form = GetParam();
+    if (form.leaf != "chiang_hair_bsdf") return;
+    Call eval = call("_eval"), environment = call("_environment");
+    ASSERT_FALSE(eval.failed() || environment.failed()) << eval.errors() << environment.errors();
+    for (const Numbers& numbers : form.settings)
+        for (Vec v : viewsOf(form)) {
+            give(eval, numbers, v);
+            give(environment, numbers, v);
+            const Vec sum = integrate(SphereMap(), 2, 96, 240, [&](Vec d) {
+                eval.vector("L", d);
+                const Vec f = eval.run(), light = lightFrom(d);
+                return Vec{f.x * light.x, f.y * light.y, f.z * light.z};
+            });
+            const std::string what = form.leaf + ", " + form.name + ": " + describe(numbers, v);
+            expectNear(sum, environment.run(), 5e-3, what);
+        }
+}
+
 // ---- Sampling ----
 
 // The chance of a sum of squares as large as this, after Wilson and Hilferty 1931.

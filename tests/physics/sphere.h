@@ -9,8 +9,6 @@
 
 namespace shaderx::tests {
 
-constexpr double kPi = 3.14159265358979323846;
-
 // Nodes and weights of Gauss and Legendre on [0, 1].
 struct Gauss {
     std::vector<double> at, weight;
