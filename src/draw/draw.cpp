@@ -1,6 +1,7 @@
 #include "draw/draw.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -133,8 +134,13 @@ struct Renderer {
     GLuint program = 0, vertexArray = 0, framebuffer = 0, colour = 0, depth = 0;
     std::map<std::string, Uniform> uniforms{};  // arrays without their "[0]"
     std::vector<Block> blocks{};
+    std::vector<Bound> units{};
 
     ~Renderer();
+    bool prepareLinked();
+    void use() const;
+    void drawOnce() const;
+    bool succeeded();
     bool run(Image& out);
     GLuint compile(GLenum stage, const std::string& text, const char* name);
     bool link();
@@ -357,7 +363,6 @@ Bound Renderer::textureOf(const std::string& uniform) {
 }
 
 void Renderer::bindTextures() {
-    std::vector<Bound> units;
     for (const auto& [name, uniform] : uniforms) {
         if (uniform.type == GL_SAMPLER_2D) {
             const std::vector<GLint> unit(static_cast<std::size_t>(uniform.count), static_cast<GLint>(units.size()));
@@ -368,12 +373,6 @@ void Renderer::bindTextures() {
                                 fmt::format("the uniform '{}' is of a type that is not bound", name));
         }
     }
-    for (std::size_t i = 0; i < units.size(); i++) {
-        gl.activeTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
-        gl.bindTexture(GL_TEXTURE_2D, units[i].texture);
-        gl.bindSampler(static_cast<GLuint>(i), units[i].sampler);
-    }
-    gl.activeTexture(GL_TEXTURE0);
 }
 
 void Renderer::bindAttributes() {
@@ -438,9 +437,8 @@ bool Renderer::makeTarget() {
     return gl.checkFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
 }
 
-// Bottom row first, as the driver gives it.
-bool Renderer::run(Image& out) {
-    if (!link()) return false;
+// All but linking, which is to be done.
+bool Renderer::prepareLinked() {
     gl.useProgram(program);
     listUniforms();
     if (!makeTarget()) {
@@ -450,19 +448,48 @@ bool Renderer::run(Image& out) {
     setUniforms();
     bindTextures();
     bindAttributes();
+    return true;
+}
+
+// Makes the driver's state that of this job, if another one was drawn since prepare().
+void Renderer::use() const {
+    gl.useProgram(program);
+    gl.bindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    gl.bindVertexArray(vertexArray);
+    for (std::size_t i = 0; i < units.size(); i++) {
+        gl.activeTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
+        gl.bindTexture(GL_TEXTURE_2D, units[i].texture);
+        gl.bindSampler(static_cast<GLuint>(i), units[i].sampler);
+    }
+    gl.activeTexture(GL_TEXTURE0);
+    for (GLuint i = 0; i < blocks.size(); i++) gl.bindBufferBase(GL_UNIFORM_BUFFER, i, blocks[i].buffer);
     gl.viewport(0, 0, side, side);
     gl.enable(GL_DEPTH_TEST);
     gl.enable(GL_CULL_FACE);
     gl.frontFace(GL_CCW);
     gl.clearColor(0, 0, 0, 0);
+}
+
+void Renderer::drawOnce() const {
     gl.clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     gl.drawElements(GL_TRIANGLES, geometry.indexCount, GL_UNSIGNED_INT, nullptr);
-    out = Image::ofFloats(side, side, 4);
-    gl.readPixels(0, 0, side, side, GL_RGBA, GL_FLOAT, out.floats.data());
+}
+
+bool Renderer::succeeded() {
     const GLenum error = gl.getError();
     if (error != GL_NO_ERROR)
         diagnostics.error("driver-error", fmt::format("the driver failed while drawing, with code {:#06x}", error));
     return error == GL_NO_ERROR;
+}
+
+// Bottom row first, as the driver gives it.
+bool Renderer::run(Image& out) {
+    if (!link() || !prepareLinked()) return false;
+    use();
+    drawOnce();
+    out = Image::ofFloats(side, side, 4);
+    gl.readPixels(0, 0, side, side, GL_RGBA, GL_FLOAT, out.floats.data());
+    return succeeded();
 }
 
 }  // namespace
@@ -552,6 +579,78 @@ Result<Active> Context::active(const std::string& vertex, const std::string& pix
         active.inputs.push_back({a.name, std::string(spelled(a.type)), "", 0});
     std::sort(active.inputs.begin(), active.inputs.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
     return active;
+}
+
+namespace {
+
+double median(std::vector<double> values) {
+    if (values.empty()) return -1;
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+    return values[values.size() / 2];
+}
+
+// A job while it is measured.
+struct Measured {
+    std::unique_ptr<Renderer> renderer;
+    double compile = 0;
+    std::vector<double> frames = {}, device = {};
+};
+
+// One frame, timed by the host's clock and, where the device has one, by that.
+void timeFrame(const Gl& gl, Measured& m, GLuint query) {
+    m.renderer->use();
+    gl.finish();
+    const auto start = std::chrono::steady_clock::now();
+    if (query) gl.beginQuery(GL_TIME_ELAPSED, query);
+    m.renderer->drawOnce();
+    if (query) gl.endQuery(GL_TIME_ELAPSED);
+    gl.finish();
+    m.frames.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    if (!query) return;
+    GLuint64 nanoseconds = 0;
+    gl.getQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
+    m.device.push_back(static_cast<double>(nanoseconds) / 1e6);
+}
+
+}  // namespace
+
+Result<std::vector<Timing>> Context::measure(std::span<const Job> jobs, int frames, Diagnostics& diagnostics) {
+    const Gl& gl = state_->driver->gl;
+    if (!state_->driver->makeCurrent()) {
+        diagnostics.error("driver-error", "the driver's context cannot be made current");
+        return Failure{};
+    }
+    if (!state_->sky.levels) state_->sky = EnvironmentMaps(scene::builtInSky(), *state_->textures);
+    std::vector<Measured> all;
+    for (const Job& job : jobs) {
+        Measured& m = all.emplace_back(Measured{
+            std::unique_ptr<Renderer>(new Renderer{gl, *state_->geometry, job, diagnostics, state_->sky, job.size})});
+        gl.finish();
+        const auto start = std::chrono::steady_clock::now();
+        if (!m.renderer->link()) return Failure{};
+        const auto linked = std::chrono::steady_clock::now();
+        if (!m.renderer->prepareLinked()) return Failure{};
+        m.renderer->use();
+        gl.finish();
+        const auto ready = std::chrono::steady_clock::now();
+        m.renderer->drawOnce();
+        gl.finish();
+        const auto drawn = std::chrono::steady_clock::now();
+        m.compile = std::chrono::duration<double, std::milli>(linked - start + (drawn - ready)).count();
+    }
+    GLint bits = 0;
+    GLuint query = 0;
+    gl.getQueryiv(GL_TIME_ELAPSED, GL_QUERY_COUNTER_BITS, &bits);
+    if (bits > 0) gl.genQueries(1, &query);
+    for (int i = 0; i < frames; i++)
+        for (Measured& m : all) timeFrame(gl, m, query);
+    if (query) gl.deleteQueries(1, &query);
+    std::vector<Timing> times;
+    for (Measured& m : all) {
+        if (!m.renderer->succeeded()) return Failure{};
+        times.push_back({m.compile, median(m.frames), median(m.device)});
+    }
+    return times;
 }
 
 Result<Image> Context::State::render(const Job& job, Diagnostics& diagnostics) {

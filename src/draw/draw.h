@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,13 @@ struct Active {
     std::vector<Variable> uniforms, inputs;
 };
 
+// How long a job takes, in milliseconds; of frames, the median.
+struct Timing {
+    double compile = 0;  // compiling, linking and the first frame
+    double frame = 0;    // from the first command until the driver says that all is done
+    double device = -1;  // the part of that which the device spends on drawing, by its own clock; below 0: it has none
+};
+
 // A driver with a context of its own and what all jobs share. Drawing makes the context current on the calling thread.
 class Context {
   public:
@@ -47,6 +55,9 @@ class Context {
 
     // Links a pair of shaders and asks what is left of its interface. Errors: driver-rejected, driver-error.
     Result<Active> active(const std::string& vertex, const std::string& pixel, Diagnostics& diagnostics);
+
+    // Draws jobs of one size in turn, each as often as `frames` says. Errors as of render.
+    Result<std::vector<Timing>> measure(std::span<const Job> jobs, int frames, Diagnostics& diagnostics);
 
     // The driver's name for itself.
     const std::string& renderer() const;

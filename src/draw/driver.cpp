@@ -1,6 +1,7 @@
 #include "draw/driver.h"
 
 #include <array>
+#include <string_view>
 #include <vector>
 
 #include <EGL/eglext.h>
@@ -16,16 +17,38 @@ bool find(void* library, const char* name, Function& function) {
     return function != nullptr;
 }
 
-// The displays worth trying: Mesa without a window system, the first device, whatever is the default.
+std::vector<EGLDeviceEXT> devicesOf(PFNEGLGETPROCADDRESSPROC getProcAddress) {
+    const auto query = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(getProcAddress("eglQueryDevicesEXT"));
+    EGLint count = 0;
+    if (!query || !query(0, nullptr, &count) || count <= 0) return {};
+    std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
+    if (!query(count, devices.data(), &count) || count <= 0) return {};
+    devices.resize(static_cast<std::size_t>(count));
+    return devices;
+}
+
+// These come first: their displays need no window system, and Mesa's would draw on the CPU.
+bool isNvidia(PFNEGLGETPROCADDRESSPROC getProcAddress, EGLDeviceEXT device) {
+    const auto ask = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(getProcAddress("eglQueryDeviceStringEXT"));
+    const char* extensions = ask ? ask(device, EGL_EXTENSIONS) : nullptr;
+    return extensions && std::string_view(extensions).find("EGL_NV_device_cuda") != std::string_view::npos;
+}
+
+// The displays worth trying: NVIDIA's devices, Mesa without a window system, other devices, whatever is the default.
 std::vector<EGLDisplay> displays(void* egl, PFNEGLGETPROCADDRESSPROC getProcAddress) {
     std::vector<EGLDisplay> out;
     const auto platform = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(getProcAddress("eglGetPlatformDisplayEXT"));
-    const auto devices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(getProcAddress("eglQueryDevicesEXT"));
-    if (platform) out.push_back(platform(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
-    EGLDeviceEXT device = nullptr;
-    EGLint count = 0;
-    if (platform && devices && devices(1, &device, &count) && count > 0)
-        out.push_back(platform(EGL_PLATFORM_DEVICE_EXT, device, nullptr));
+    if (platform) {
+        const std::vector<EGLDeviceEXT> devices = devicesOf(getProcAddress);
+        const auto addDevices = [&](bool nvidia) {
+            for (EGLDeviceEXT device : devices)
+                if (isNvidia(getProcAddress, device) == nvidia)
+                    out.push_back(platform(EGL_PLATFORM_DEVICE_EXT, device, nullptr));
+        };
+        addDevices(true);
+        out.push_back(platform(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+        addDevices(false);
+    }
     PFNEGLGETDISPLAYPROC getDisplay = nullptr;
     if (find(egl, "eglGetDisplay", getDisplay)) out.push_back(getDisplay(EGL_DEFAULT_DISPLAY));
     return out;

@@ -16,6 +16,7 @@ namespace shaderx::draw {
 #define SHADERX_GL_FUNCTIONS(X)                                                        \
     X(activeTexture, ActiveTexture, ACTIVETEXTURE)                                     \
     X(attachShader, AttachShader, ATTACHSHADER)                                        \
+    X(beginQuery, BeginQuery, BEGINQUERY)                                              \
     X(bindBuffer, BindBuffer, BINDBUFFER)                                              \
     X(bindBufferBase, BindBufferBase, BINDBUFFERBASE)                                  \
     X(bindFramebuffer, BindFramebuffer, BINDFRAMEBUFFER)                               \
@@ -33,6 +34,7 @@ namespace shaderx::draw {
     X(deleteBuffers, DeleteBuffers, DELETEBUFFERS)                                     \
     X(deleteFramebuffers, DeleteFramebuffers, DELETEFRAMEBUFFERS)                      \
     X(deleteProgram, DeleteProgram, DELETEPROGRAM)                                     \
+    X(deleteQueries, DeleteQueries, DELETEQUERIES)                                     \
     X(deleteRenderbuffers, DeleteRenderbuffers, DELETERENDERBUFFERS)                   \
     X(deleteSamplers, DeleteSamplers, DELETESAMPLERS)                                  \
     X(deleteShader, DeleteShader, DELETESHADER)                                        \
@@ -41,11 +43,14 @@ namespace shaderx::draw {
     X(drawElements, DrawElements, DRAWELEMENTS)                                        \
     X(enable, Enable, ENABLE)                                                          \
     X(enableVertexAttribArray, EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY)       \
+    X(endQuery, EndQuery, ENDQUERY)                                                    \
+    X(finish, Finish, FINISH)                                                          \
     X(framebufferRenderbuffer, FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)       \
     X(framebufferTexture2D, FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)                \
     X(frontFace, FrontFace, FRONTFACE)                                                 \
     X(genBuffers, GenBuffers, GENBUFFERS)                                              \
     X(genFramebuffers, GenFramebuffers, GENFRAMEBUFFERS)                               \
+    X(genQueries, GenQueries, GENQUERIES)                                              \
     X(genRenderbuffers, GenRenderbuffers, GENRENDERBUFFERS)                            \
     X(genSamplers, GenSamplers, GENSAMPLERS)                                           \
     X(genTextures, GenTextures, GENTEXTURES)                                           \
@@ -61,6 +66,8 @@ namespace shaderx::draw {
     X(getIntegerv, GetIntegerv, GETINTEGERV)                                           \
     X(getProgramInfoLog, GetProgramInfoLog, GETPROGRAMINFOLOG)                         \
     X(getProgramiv, GetProgramiv, GETPROGRAMIV)                                        \
+    X(getQueryObjectui64v, GetQueryObjectui64v, GETQUERYOBJECTUI64V)                   \
+    X(getQueryiv, GetQueryiv, GETQUERYIV)                                              \
     X(getShaderInfoLog, GetShaderInfoLog, GETSHADERINFOLOG)                            \
     X(getShaderiv, GetShaderiv, GETSHADERIV)                                           \
     X(getString, GetString, GETSTRING)                                                 \
