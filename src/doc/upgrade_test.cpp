@@ -136,7 +136,7 @@ TEST(Upgrade, WordsOfTheFirstVersions) {
         upgraded(
             R"(<collection name="c"><collectionadd name="x" geom="/a"/><collectionadd name="y" geom="/b"/><collectionremove name="z" geom="/c"/></collection><look name="l"><materialassign name="M" geom="*"/></look><look name="k"><lookinherit name="i" look="l"/></look>)",
             nullptr, "1.26"),
-        R"(<collection name="c" includegeom="/a,/b" excludegeom="/c" /><look name="l"><materialassign name="M" geom="*" material="M" /></look><look name="k" inherit="l" />)");
+        R"(<collection name="c" includegeom="/a,/b" excludegeom="/c" /><look name="l"><materialassign name="M" geom="/" material="M" /></look><look name="k" inherit="l" />)");
     EXPECT_EQ(
         upgraded(
             R"(<image name="i" type="color3"><parameter name="file" type="filename" value="a.%UDIM.%UVTILE.tif"/></image>)",

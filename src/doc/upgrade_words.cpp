@@ -142,6 +142,10 @@ void words35(Upgrader& u, ElementId e) {
         u.d.set(e, "value", "/");
         u.edited(e, "geometry '*'", "geometry '/'");
     }
+    if (u.attribute(e, "geom") == "*") {
+        u.d.set(e, "geom", "/");
+        u.edited(e, "geometry '*'", "geometry '/'");
+    }
     fileTokens(u, e);
     if (isNode(u.d, e)) nodes35(u, e);
     inheritByAttribute(u, e, "materialinherit", "material");
