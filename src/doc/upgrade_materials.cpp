@@ -25,7 +25,7 @@ struct Meaning {
     ElementId shader;      // the <shader>, which is a node by now
 };
 
-constexpr std::size_t kMostAncestors = 1000;
+constexpr std::size_t kMostAncestors = 100;
 
 struct Materials {
     Upgrader& u;
