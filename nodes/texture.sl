@@ -24,3 +24,27 @@ vector2 latitude_longitude(vector direction, float degrees) {
 inline vector2 tiled(vector2 texcoord, vector2 tiling, vector2 offset, vector2 image_size, vector2 tile_size) {
     return (texcoord * tiling - offset) / (image_size + step(abs(image_size), 1e-20)) * tile_size;
 }
+
+// The same by glTF's transform, which scales and turns the image; v of the offset grows downwards. An image that stays
+// where it is costs nothing.
+vector2 place_gltf_texture(vector2 texcoord, vector2 pivot, vector2 scale, float degrees, vector2 offset, int order) {
+    if (known(scale.x == 1.0 && scale.y == 1.0 && degrees == 0.0 && offset.x == 0.0 && offset.y == 0.0))
+        return texcoord;
+    vector2 centred = texcoord - pivot;
+    vector2 moved = offset * vector2(-1.0, 1.0);
+    vector2 placed = order == 0 ? rotate_in_plane(centred * scale, -degrees) - moved
+                                : rotate_in_plane(centred - moved, -degrees) * scale;
+    return placed + pivot;
+}
+
+// A texel times `scale` plus `bias`, by channel and whole.
+inline void scale_texel(color4 texel, color4 scale, color4 bias, output float r, output float g, output float b,
+                        output float a, output color rgb, output color4 rgba) {
+    color4 scaled = texel * scale + bias;
+    r = scaled.r;
+    g = scaled.g;
+    b = scaled.b;
+    a = scaled.a;
+    rgb = scaled.rgb;
+    rgba = scaled;
+}

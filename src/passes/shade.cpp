@@ -103,9 +103,10 @@ struct Shader {
     }
 
     ExprId product(ExprId a, ExprId c) { return b.op(Op::Mul, {a, c}); }
-    bool isZero(ExprId e) const {
-        if (!b.function().isConstant(e)) return false;
-        auto words = b.function().constantWords(e);
+    bool isZero(ExprId e) const { return isZero(b.function(), e); }
+    static bool isZero(const Function& f, ExprId e) {
+        if (!f.isConstant(e)) return false;
+        auto words = f.constantWords(e);
         return std::all_of(words.begin(), words.end(), [](std::uint32_t w) { return w == 0; });
     }
     ExprId black() { return b.constant(Type::Color3, {0.0f}); }
@@ -200,7 +201,7 @@ struct Shader {
                         ExprId below = product(w[i], passed(o[0]));
                         b.hint(below, name("passed"));
                         give(o[1], below);
-                    } else {
+                    } else if (!isEmpty(o[1])) {
                         ignoreVolume();
                     }
                     break;
@@ -209,6 +210,14 @@ struct Shader {
             }
         }
         return w;
+    }
+
+    // Whether a volume neither absorbs nor scatters, whatever comes.
+    bool isEmpty(ExprId volume) const {
+        if (from[volume].op != Op::Leaf) return false;
+        auto parameters = from.operandsOf(from[volume]);
+        return std::all_of(parameters.begin(), parameters.end(),
+                           [&](ExprId p) { return from[p].type != Type::Vector3 || isZero(from, p); });
     }
 
     void ignoreVolume() {
