@@ -15,7 +15,7 @@ vector2 lama_roughness_across(float roughness, float across)
     return across > 0.0 ? vector2(alpha, max(across * across, 0.000001)) : vector2(alpha);
 }
 
-// A direction of anisotropy, turned clockwise about the normal by whole turns.
+// A direction of anisotropy, turned counter-clockwise about the normal, in turns.
 vector lama_tangent(vector direction, float rotation, vector normal)
 {
     return rotation == 0.0 ? direction : normalize(rotate_about(direction, -360.0 * rotation, normal));

@@ -56,7 +56,7 @@ inline void standard_surface_to_gltf(
     vector2 alpha = roughness_anisotropy(specular_roughness, specular_anisotropy);
     float room = 1.0 - alpha.y;
     roughness_out = sqrt(alpha.y);
-    anisotropy_strength_out = room > 0.0 ? sqrt((alpha.x - alpha.y) / room) : 0.0;
+    anisotropy_strength_out = room > 0.0 ? sqrt(max(alpha.x - alpha.y, 0.0) / room) : 0.0;
     anisotropy_rotation_out = specular_rotation * -6.283;
     specular_out = specular;
     specular_color_out = specular_color;
@@ -66,10 +66,10 @@ inline void standard_surface_to_gltf(
     thickness_out = thin_walled ? 0.0 : 1.0;
     attenuation_color_out = transmission > 0.0 && has_depth ? transmission_color : color(1.0);
     attenuation_distance_out = transmission_depth;
-    dispersion_out = transmission_dispersion == 0.0 ? 0.0 : 20.0 / transmission_dispersion;
+    dispersion_out = transmission_dispersion == 0.0 ? 0.0 : 20.0 / nonzero(transmission_dispersion);
 
     sheen_color_out = sheen_color * sheen;
-    sheen_roughness_out = sheen > 0.0 ? sqrt(sheen_roughness) : 0.0;
+    sheen_roughness_out = sheen > 0.0 ? sqrt(max(sheen_roughness, 0.0)) : 0.0;
     clearcoat_out = is_tinting ? mean_of(coat_color * coat) : coat;
     clearcoat_roughness_out = coat_roughness;
     iridescence_out = has_film ? 1.0 : 0.0;
@@ -135,7 +135,7 @@ inline void standard_surface_to_open_pbr(
 
     fuzz_weight_out = sheen;
     fuzz_color_out = sheen_color;
-    fuzz_roughness_out = pow(sheen_roughness, 0.4);
+    fuzz_roughness_out = pow(max(sheen_roughness, 0.0), 0.4);
 
     // On metal the coat's colour is the metal's; it must not tint twice.
     coat_weight_out = coat * metalness > 0.0 ? 0.0 : coat;
@@ -182,7 +182,7 @@ inline void open_pbr_to_standard_surface(
     // What the coat takes from a base of about this albedo.
     color matte = mix(base_color, subsurface_color, subsurface_weight);
     color albedo = mix(matte, base_color * specular_weight, base_metalness);
-    color darkened = open_pbr_coat_darkening(albedo, coat_ior, coat_darkening, coat_weight);
+    color darkened = open_pbr_coat_darkening(albedo, max(coat_ior, 0.01), coat_darkening, coat_weight);
 
     base_out = base_weight;
     base_color_out = base_color * darkened;
@@ -210,7 +210,7 @@ inline void open_pbr_to_standard_surface(
 
     sheen_out = fuzz_weight;
     sheen_color_out = fuzz_color;
-    sheen_roughness_out = pow(fuzz_roughness, 2.5);
+    sheen_roughness_out = pow(max(fuzz_roughness, 0.0), 2.5);
 
     coat_out = coat_weight;
     coat_color_out = coat_color;

@@ -81,7 +81,7 @@ GLuint TextureSet::load(const Texture& texture, Diagnostics& diagnostics) {
 }
 
 static GLint wrapOf(const std::string& address) {
-    if (address == "constant") return GL_CLAMP_TO_BORDER;
+    if (address == "constant" || address == "black") return GL_CLAMP_TO_BORDER;
     if (address == "clamp") return GL_CLAMP_TO_EDGE;
     if (address == "mirror") return GL_MIRRORED_REPEAT;
     return GL_REPEAT;
@@ -91,9 +91,11 @@ Bound TextureSet::addMaterial(const Texture& texture, Diagnostics& diagnostics) 
     const GLuint loaded = texture.file.empty() ? 0 : load(texture, diagnostics);
     if (!loaded) return addColour(texture.defaultColor);
     const bool closest = texture.filter == "closest";
+    const bool isBlack = texture.uAddress == "black" || texture.vAddress == "black";
+    const float black[4] = {0, 0, 0, 0};
     return {loaded, addSampler(wrapOf(texture.uAddress), wrapOf(texture.vAddress),
                                closest ? GL_NEAREST_MIPMAP_NEAREST : GL_LINEAR_MIPMAP_LINEAR,
-                               closest ? GL_NEAREST : GL_LINEAR, texture.defaultColor)};
+                               closest ? GL_NEAREST : GL_LINEAR, isBlack ? black : texture.defaultColor)};
 }
 
 }  // namespace shaderx::draw

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "doc/color_spaces.h"
+#include "graph/texture_hints.h"
 #include "graph/values.h"
 
 namespace shaderx::graph {
@@ -468,36 +469,47 @@ struct Lowerer {
     ExprId texture(const Source& s, const Input* input, const Node* reader) {
         const doc::ElementId element = s.element;
         auto it = uniformOf.find(element);
-        if (it == uniformOf.end()) it = uniformOf.emplace(element, newTexture(s, reader)).first;
+        if (it == uniformOf.end()) it = uniformOf.emplace(element, newTexture(s, input, reader)).first;
         record(it->second, element, input, reader);
         return b.uniform(it->second, Type::Texture2D);
     }
 
-    Name newTexture(const Source& s, const Node* reader) {
+    Name newTexture(const Source& s, const Input* input, const Node* reader) {
         Uniform& u = addUniform(s.element, Type::Texture2D);
         u.file = fileOf({&d, s.element}, withTokens(s.element, d.attributeText(s.element, d.known().value)));
         u.colorspace = d.text(spaceOf(s).name);
-        if (reader) readHints(u, *reader);
+        if (reader && input) readHints(u, *reader, input->port->name);
         return u.name;
     }
 
-    // How the node that reads the texture wants it read.
-    void readHints(Uniform& u, const Node& n) {
-        for (const Input& i : graph.inputsOf(n)) {
-            const Name name = i.port->name;
-            if (name != uaddressmode && name != vaddressmode && name != filtertype && name != defaultColor) continue;
-            std::string_view value =
-                i.source.kind == Source::Kind::Value
-                    ? d.attributeText(i.source.element, d.known().value)
-                    : definitions.element(graph.kindOf(n).def, *i.port).attributeText(d.known().value);
+    // How the node that reads the texture wants it read; `file` is its input.
+    void readHints(Uniform& u, const Node& n, Name file) {
+        for (const Name hint : {uaddressmode, vaddressmode, filtertype, defaultColor}) {
+            const HintSource from = hintSource(definitions, graph.kindOf(n).def, file, hint);
+            Type type = Type::Void;
+            const std::string_view value =
+                from.fixed ? from.fixed.attributeText(d.known().value) : textOfInput(n, from.input, type);
             if (value.empty()) continue;
-            if (name == uaddressmode) u.uAddress = value;
-            if (name == vaddressmode) u.vAddress = value;
-            if (name == filtertype) u.filter = value;
+            if (from.fixed) type = typeNamed(from.fixed.attributeText(d.known().type));
+            if (hint == uaddressmode) u.uAddress = addressMode(value);
+            if (hint == vaddressmode) u.vAddress = addressMode(value);
+            if (hint == filtertype) u.filter = value;
             Words words;
-            if (name == defaultColor && readWords(i.type, value, words))
+            if (hint == defaultColor && readWords(type, value, words))
                 for (std::uint32_t w : words.all()) u.defaultColor.push_back(std::bit_cast<float>(w));
         }
+    }
+
+    // The value of a node's input as it is written or else as the nodedef has it, for connected ones, too.
+    std::string_view textOfInput(const Node& n, Name input, Type& type) const {
+        for (const Input& i : graph.inputsOf(n)) {
+            if (i.port->name != input) continue;
+            type = i.type;
+            return i.source.kind == Source::Kind::Value
+                       ? d.attributeText(i.source.element, d.known().value)
+                       : definitions.element(graph.kindOf(n).def, *i.port).attributeText(d.known().value);
+        }
+        return {};
     }
 
     // A file as it is to be found from the document: with the prefix of where it is written.
@@ -622,7 +634,7 @@ struct Lowerer {
         u.path = fmt::format("{}/{}", d.path(owner.element), name);
         if (u.type == Type::Texture2D) {
             u.file = fileOf(port, value);
-            readHints(u, owner);
+            readHints(u, owner, input.port->name);
         } else if (value.empty()) {
             u.values.assign(static_cast<std::size_t>(componentCount(u.type)), 0);
         } else {

@@ -441,7 +441,8 @@ struct Host {
         if (!picture) return plain(texture.defaultColor);
         Sampling sampling{
             addressNamed(texture.uAddress), addressNamed(texture.vAddress), texture.filter == "closest", {}};
-        std::copy(std::begin(texture.defaultColor), std::end(texture.defaultColor), sampling.border.begin());
+        if (texture.uAddress != "black" && texture.vAddress != "black")
+            std::copy(std::begin(texture.defaultColor), std::end(texture.defaultColor), sampling.border.begin());
         return std::make_shared<const Texture>(*picture, true, sampling);
     }
 

@@ -8,7 +8,7 @@ namespace shaderx::oracle {
 using image::Image;
 
 Address addressNamed(const std::string& name) {
-    if (name == "constant") return Address::Constant;
+    if (name == "constant" || name == "black") return Address::Constant;
     if (name == "clamp") return Address::Clamp;
     if (name == "mirror") return Address::Mirror;
     return Address::Periodic;

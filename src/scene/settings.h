@@ -11,9 +11,10 @@ namespace shaderx::scene {
 // The picture behind one sampler uniform of a material.
 struct Texture {
     std::string uniform;
-    std::string file;                                          // a path as it can be opened; empty: the default colour
-    std::string uAddress = "periodic", vAddress = "periodic";  // constant (default colour), clamp, periodic, mirror
-    std::string filter = "linear";                             // closest, linear, cubic (drawn as linear)
+    std::string file;  // a path as it can be opened; empty: the default colour
+    std::string uAddress = "periodic",
+                vAddress = "periodic";  // constant (default colour), black, clamp, periodic, mirror
+    std::string filter = "linear";      // closest, linear, cubic (drawn as linear)
     float defaultColor[4] = {0, 0, 0, 0};
     std::string documentPath;  // of the node, for messages
 };
