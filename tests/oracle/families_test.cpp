@@ -27,66 +27,67 @@ constexpr const char* kParts = R"(
 )";
 
 const Pair
-    kPairs[] =
-        {
-            {"Add",
-             R"(<LamaAdd name="x" type="BSDF"><input name="material1" type="BSDF" nodename="matte"/><input name="material2" type="BSDF" nodename="gloss"/><input name="weight1" type="float" value="0.4"/><input name="weight2" type="float" value="0.5"/></LamaAdd>)",
-             R"(<multiply name="m" type="BSDF"><input name="in1" type="BSDF" nodename="matte"/><input name="in2" type="float" value="0.4"/></multiply>
+    kPairs
+        [] =
+            {
+                {"Add",
+                 R"(<LamaAdd name="x" type="BSDF"><input name="material1" type="BSDF" nodename="matte"/><input name="material2" type="BSDF" nodename="gloss"/><input name="weight1" type="float" value="0.4"/><input name="weight2" type="float" value="0.5"/></LamaAdd>)",
+                 R"(<multiply name="m" type="BSDF"><input name="in1" type="BSDF" nodename="matte"/><input name="in2" type="float" value="0.4"/></multiply>
         <multiply name="g" type="BSDF"><input name="in1" type="BSDF" nodename="gloss"/><input name="in2" type="float" value="0.5"/></multiply>
         <add name="x" type="BSDF"><input name="in1" type="BSDF" nodename="m"/><input name="in2" type="BSDF" nodename="g"/></add>)"},
-            {"Mix",
-             R"(<LamaMix name="x" type="BSDF"><input name="material1" type="BSDF" nodename="matte"/><input name="material2" type="BSDF" nodename="gloss"/><input name="mix" type="float" value="0.3"/></LamaMix>)",
-             R"(<mix name="x" type="BSDF"><input name="bg" type="BSDF" nodename="matte"/><input name="fg" type="BSDF" nodename="gloss"/><input name="mix" type="float" value="0.3"/></mix>)"},
-            {"AddEmission",
-             R"(<LamaAdd name="x" type="EDF"><input name="material1" type="EDF" nodename="red"/><input name="material2" type="EDF" nodename="blue"/><input name="weight2" type="float" value="0.5"/></LamaAdd>)",
-             R"(<uniform_edf name="x" type="EDF"><input name="color" type="color3" value="0.85, 0.3, 0.55"/></uniform_edf>)"},
-            {"MixEmission",
-             R"(<LamaMix name="x" type="EDF"><input name="material1" type="EDF" nodename="red"/><input name="material2" type="EDF" nodename="blue"/><input name="mix" type="float" value="0.25"/></LamaMix>)",
-             R"(<uniform_edf name="x" type="EDF"><input name="color" type="color3" value="0.625, 0.2, 0.3"/></uniform_edf>)"},
-            {"Emission",
-             R"(<LamaEmission name="x" type="EDF"><input name="color" type="color3" value="0.8, 0.2, 0.1"/></LamaEmission>)",
-             R"(<uniform_edf name="x" type="EDF"><input name="color" type="color3" value="0.8, 0.2, 0.1"/></uniform_edf>)"},
-            {"Layer",
-             R"(<LamaLayer name="x" type="BSDF"><input name="materialTop" type="BSDF" nodename="gloss"/><input name="materialBase" type="BSDF" nodename="matte"/><input name="topMix" type="float" value="0.5"/></LamaLayer>)",
-             R"(<multiply name="g" type="BSDF"><input name="in1" type="BSDF" nodename="gloss"/><input name="in2" type="float" value="0.5"/></multiply>
+                {"Mix",
+                 R"(<LamaMix name="x" type="BSDF"><input name="material1" type="BSDF" nodename="matte"/><input name="material2" type="BSDF" nodename="gloss"/><input name="mix" type="float" value="0.3"/></LamaMix>)",
+                 R"(<mix name="x" type="BSDF"><input name="bg" type="BSDF" nodename="matte"/><input name="fg" type="BSDF" nodename="gloss"/><input name="mix" type="float" value="0.3"/></mix>)"},
+                {"AddEmission",
+                 R"(<LamaAdd name="x" type="EDF"><input name="material1" type="EDF" nodename="red"/><input name="material2" type="EDF" nodename="blue"/><input name="weight2" type="float" value="0.5"/></LamaAdd>)",
+                 R"(<uniform_edf name="x" type="EDF"><input name="color" type="color3" value="0.85, 0.3, 0.55"/></uniform_edf>)"},
+                {"MixEmission",
+                 R"(<LamaMix name="x" type="EDF"><input name="material1" type="EDF" nodename="red"/><input name="material2" type="EDF" nodename="blue"/><input name="mix" type="float" value="0.25"/></LamaMix>)",
+                 R"(<uniform_edf name="x" type="EDF"><input name="color" type="color3" value="0.625, 0.2, 0.3"/></uniform_edf>)"},
+                {"Emission",
+                 R"(<LamaEmission name="x" type="EDF"><input name="color" type="color3" value="0.8, 0.2, 0.1"/></LamaEmission>)",
+                 R"(<uniform_edf name="x" type="EDF"><input name="color" type="color3" value="0.8, 0.2, 0.1"/></uniform_edf>)"},
+                {"Layer",
+                 R"(<LamaLayer name="x" type="BSDF"><input name="materialTop" type="BSDF" nodename="gloss"/><input name="materialBase" type="BSDF" nodename="matte"/><input name="topMix" type="float" value="0.5"/></LamaLayer>)",
+                 R"(<multiply name="g" type="BSDF"><input name="in1" type="BSDF" nodename="gloss"/><input name="in2" type="float" value="0.5"/></multiply>
         <layer name="x" type="BSDF"><input name="top" type="BSDF" nodename="g"/><input name="base" type="BSDF" nodename="matte"/></layer>)"},
-            {"Conductor",
-             R"(<LamaConductor name="x" type="BSDF"><input name="fresnelMode" type="integer" value="1"/><input name="tint" type="color3" value="0.9, 0.5, 0.4"/><input name="IOR" type="vector3" value="1.5, 2, 0.6"/><input name="extinction" type="vector3" value="1, 3, 4"/><input name="roughness" type="float" value="0.5"/><input name="anisotropy" type="float" value="0.5"/></LamaConductor>)",
-             R"(<conductor_bsdf name="c" type="BSDF"><input name="ior" type="color3" value="1.5, 2, 0.6"/><input name="extinction" type="color3" value="1, 3, 4"/><input name="roughness" type="vector2" value="0.25, 0.5625"/></conductor_bsdf>
+                {"Conductor",
+                 R"(<LamaConductor name="x" type="BSDF"><input name="fresnelMode" type="integer" value="1"/><input name="tint" type="color3" value="0.9, 0.5, 0.4"/><input name="IOR" type="vector3" value="1.5, 2, 0.6"/><input name="extinction" type="vector3" value="1, 3, 4"/><input name="roughness" type="float" value="0.5"/><input name="anisotropy" type="float" value="0.5"/></LamaConductor>)",
+                 R"(<conductor_bsdf name="c" type="BSDF"><input name="ior" type="color3" value="1.5, 2, 0.6"/><input name="extinction" type="color3" value="1, 3, 4"/><input name="roughness" type="vector2" value="0.25, 0.5625"/></conductor_bsdf>
         <multiply name="x" type="BSDF"><input name="in1" type="BSDF" nodename="c"/><input name="in2" type="color3" value="0.9, 0.5, 0.4"/></multiply>)"},
-            {"ConductorTurned",
-             R"(<LamaConductor name="x" type="BSDF"><input name="fresnelMode" type="integer" value="1"/><input name="roughness" type="float" value="0.5"/><input name="anisotropy" type="float" value="-0.5"/><input name="anisotropyRotation" type="float" value="0.2"/></LamaConductor>)",
-             R"(<tangent name="t" type="vector3"><input name="space" type="string" value="world"/></tangent>
+                {"ConductorTurned",
+                 R"(<LamaConductor name="x" type="BSDF"><input name="fresnelMode" type="integer" value="1"/><input name="roughness" type="float" value="0.5"/><input name="anisotropy" type="float" value="-0.5"/><input name="anisotropyRotation" type="float" value="0.2"/></LamaConductor>)",
+                 R"(<tangent name="t" type="vector3"><input name="space" type="string" value="world"/></tangent>
         <normal name="n" type="vector3"><input name="space" type="string" value="world"/></normal>
         <rotate3d name="turned" type="vector3"><input name="in" type="vector3" nodename="t"/><input name="amount" type="float" value="-72"/><input name="axis" type="vector3" nodename="n"/></rotate3d>
         <conductor_bsdf name="x" type="BSDF"><input name="tangent" type="vector3" nodename="turned"/><input name="ior" type="color3" value="0.18, 0.42, 1.37"/><input name="extinction" type="color3" value="3.42, 2.35, 1.77"/><input name="roughness" type="vector2" value="0.25, 0.0625"/></conductor_bsdf>)"},
-            {"Dielectric",
-             R"(<LamaDielectric name="x" type="BSDF"><input name="reflectionTint" type="color3" value="1, 0.4, 0.3"/><input name="transmissionTint" type="color3" value="0.2, 0.8, 0.9"/><input name="roughness" type="float" value="0.5"/></LamaDielectric>)",
-             R"(<dielectric_bsdf name="t" type="BSDF"><input name="tint" type="color3" value="0.2, 0.8, 0.9"/><input name="roughness" type="vector2" value="0.25, 0.25"/><input name="scatter_mode" type="string" value="T"/></dielectric_bsdf>
+                {"Dielectric",
+                 R"(<LamaDielectric name="x" type="BSDF"><input name="reflectionTint" type="color3" value="1, 0.4, 0.3"/><input name="transmissionTint" type="color3" value="0.2, 0.8, 0.9"/><input name="roughness" type="float" value="0.5"/></LamaDielectric>)",
+                 R"(<dielectric_bsdf name="t" type="BSDF"><input name="tint" type="color3" value="0.2, 0.8, 0.9"/><input name="roughness" type="vector2" value="0.25, 0.25"/><input name="scatter_mode" type="string" value="T"/></dielectric_bsdf>
         <dielectric_bsdf name="r" type="BSDF"><input name="tint" type="color3" value="1, 0.4, 0.3"/><input name="roughness" type="vector2" value="0.25, 0.25"/></dielectric_bsdf>
         <layer name="x" type="BSDF"><input name="top" type="BSDF" nodename="r"/><input name="base" type="BSDF" nodename="t"/></layer>)"},
-            {"GeneralizedSchlick", R"(<LamaGeneralizedSchlick name="x" type="BSDF"><input name="fresnelMode" type="integer" value="1"/><input name="IOR" type="vector3" value="1.5, 2, 3"/><input name="reflectivity90" type="color3" value="0.9, 1, 0.6"/><input name="reflectivityProfile" type="float" value="0.5"/><input name="roughness" type="float" value="0.5"/><input name="transmissionTint" type="color3" value="0.2, 0.8, 0.9"/></LamaGeneralizedSchlick>)",
-             R"(<generalized_schlick_bsdf name="t" type="BSDF"><input name="color0" type="color3" value="0.04, 0.11111111, 0.25"/><input name="color90" type="color3" value="0.9, 1, 0.6"/><input name="exponent" type="float" value="2"/><input name="roughness" type="vector2" value="0.25, 0.25"/><input name="scatter_mode" type="string" value="T"/></generalized_schlick_bsdf>
+                {"GeneralizedSchlick", R"(<LamaGeneralizedSchlick name="x" type="BSDF"><input name="fresnelMode" type="integer" value="1"/><input name="IOR" type="vector3" value="1.5, 2, 3"/><input name="reflectivity90" type="color3" value="0.9, 1, 0.6"/><input name="reflectivityProfile" type="float" value="0.5"/><input name="roughness" type="float" value="0.5"/><input name="transmissionTint" type="color3" value="0.2, 0.8, 0.9"/></LamaGeneralizedSchlick>)",
+                 R"(<generalized_schlick_bsdf name="t" type="BSDF"><input name="color0" type="color3" value="0.04, 0.11111111, 0.25"/><input name="color90" type="color3" value="0.9, 1, 0.6"/><input name="exponent" type="float" value="2"/><input name="roughness" type="vector2" value="0.25, 0.25"/><input name="scatter_mode" type="string" value="T"/></generalized_schlick_bsdf>
         <multiply name="tt" type="BSDF"><input name="in1" type="BSDF" nodename="t"/><input name="in2" type="color3" value="0.2, 0.8, 0.9"/></multiply>
         <generalized_schlick_bsdf name="r" type="BSDF"><input name="color0" type="color3" value="0.04, 0.11111111, 0.25"/><input name="color90" type="color3" value="0.9, 1, 0.6"/><input name="exponent" type="float" value="2"/><input name="roughness" type="vector2" value="0.25, 0.25"/></generalized_schlick_bsdf>
         <layer name="x" type="BSDF"><input name="top" type="BSDF" nodename="r"/><input name="base" type="BSDF" nodename="tt"/></layer>)"},
-            {"Iridescence",
-             R"(<LamaIridescence name="x" type="BSDF"><input name="relativeFilmThickness" type="float" value="0.25"/><input name="filmIOR" type="float" value="1.6"/><input name="roughness" type="float" value="0.3"/></LamaIridescence>)",
-             R"(<dielectric_bsdf name="x" type="BSDF"><input name="ior" type="float" value="1"/><input name="thinfilm_thickness" type="float" value="500"/><input name="thinfilm_ior" type="float" value="1.6"/><input name="roughness" type="vector2" value="0.09, 0.09"/><input name="scatter_mode" type="string" value="RT"/></dielectric_bsdf>)"},
-            {"Diffuse",
-             R"(<LamaDiffuse name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/><input name="roughness" type="float" value="0.8"/><input name="energyCompensation" type="float" value="0.25"/></LamaDiffuse>)",
-             R"(<oren_nayar_diffuse_bsdf name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/><input name="roughness" type="float" value="0.32"/></oren_nayar_diffuse_bsdf>
+                {"Iridescence",
+                 R"(<LamaIridescence name="x" type="BSDF"><input name="relativeFilmThickness" type="float" value="0.25"/><input name="filmIOR" type="float" value="1.6"/><input name="roughness" type="float" value="0.3"/></LamaIridescence>)",
+                 R"(<dielectric_bsdf name="x" type="BSDF"><input name="ior" type="float" value="1"/><input name="thinfilm_thickness" type="float" value="500"/><input name="thinfilm_ior" type="float" value="1.6"/><input name="roughness" type="vector2" value="0.09, 0.09"/><input name="scatter_mode" type="string" value="RT"/></dielectric_bsdf>)"},
+                {"Diffuse",
+                 R"(<LamaDiffuse name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/><input name="roughness" type="float" value="0.8"/><input name="energyCompensation" type="float" value="0.25"/></LamaDiffuse>)",
+                 R"(<oren_nayar_diffuse_bsdf name="a" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/><input name="roughness" type="float" value="0.32"/></oren_nayar_diffuse_bsdf>
         <oren_nayar_diffuse_bsdf name="b" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/><input name="roughness" type="float" value="0.32"/><input name="energy_compensation" type="boolean" value="true"/></oren_nayar_diffuse_bsdf>
         <mix name="x" type="BSDF"><input name="bg" type="BSDF" nodename="a"/><input name="fg" type="BSDF" nodename="b"/><input name="mix" type="float" value="0.25"/></mix>)"},
-            {"Translucent",
-             R"(<LamaTranslucent name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/><input name="roughness" type="float" value="0.8"/></LamaTranslucent>)",
-             R"(<translucent_bsdf name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/></translucent_bsdf>)"},
-            {"SSS",
-             R"(<LamaSSS name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.3"/><input name="sssRadius" type="color3" value="1, 0.5, 0.25"/><input name="sssScale" type="float" value="100"/><input name="sssUnitLength" type="float" value="0.01"/></LamaSSS>)",
-             R"(<subsurface_bsdf name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.3"/><input name="radius" type="color3" value="1, 0.5, 0.25"/></subsurface_bsdf>)"},
-            {"Sheen",
-             R"(<LamaSheen name="x" type="BSDF"><input name="color" type="color3" value="0.5, 0.8, 0.3"/><input name="roughness" type="float" value="0.5"/></LamaSheen>)",
-             R"(<sheen_bsdf name="x" type="BSDF"><input name="color" type="color3" value="0.5, 0.8, 0.3"/><input name="roughness" type="float" value="0.3025"/></sheen_bsdf>)"},
+                {"Translucent",
+                 R"(<LamaTranslucent name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/><input name="roughness" type="float" value="0.8"/></LamaTranslucent>)",
+                 R"(<translucent_bsdf name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.5, 0.2"/></translucent_bsdf>)"},
+                {"SSS",
+                 R"(<LamaSSS name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.3"/><input name="sssRadius" type="color3" value="1, 0.5, 0.25"/><input name="sssScale" type="float" value="100"/><input name="sssUnitLength" type="float" value="0.01"/></LamaSSS>)",
+                 R"(<subsurface_bsdf name="x" type="BSDF"><input name="color" type="color3" value="0.8, 0.4, 0.3"/><input name="radius" type="color3" value="1, 0.5, 0.25"/></subsurface_bsdf>)"},
+                {"Sheen",
+                 R"(<LamaSheen name="x" type="BSDF"><input name="color" type="color3" value="0.5, 0.8, 0.3"/><input name="roughness" type="float" value="0.5"/></LamaSheen>)",
+                 R"(<sheen_bsdf name="x" type="BSDF"><input name="color" type="color3" value="0.5, 0.8, 0.3"/><input name="roughness" type="float" value="0.3025"/></sheen_bsdf>)"},
 };
 
 class Lama : public testing::TestWithParam<Pair> {};
