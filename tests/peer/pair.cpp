@@ -6,13 +6,13 @@
 //   in   {"id": "…", "size": 48, "samples": 16, "environment": "white.pfm", "pictures": "grid.pfm",
 //         "theirs": ["a.vert", "a.frag"] or "a.pfm", "ours": [["b.vert", "b.frag"], …]}
 //   out  {"id": "…", "theirs": "" or why not drawn, "ours": [{"glslang": "" or its complaint, "draw": "" or why not,
-//         "max": …, "rmse": …, "odd": …, "same": …, "highest": …, "lowest": …, "bad": …, "mean": [r, g, b]}, …]}
+//         "max": …, "rmse": …, "odd": …, "undefined": …, "highest": …, "lowest": …, "bad": …, "mean": [r, g, b]}, …]}
 //
 // `environment` (a picture of radiance; the built-in sky) and `theirs` may be left out; `pictures` is what every
 // sampler of a material reads. `max` is the largest difference of a channel, relative where their value exceeds 1;
 // `odd` the share of covered pixels in which it exceeds `tolerance` (1e-3); `rmse` is over the whole picture, values
-// clamped to 0 … 4; two that are no number are the same. `highest`, `lowest` and `bad` (channels that are no finite
-// number) are of our picture alone, colours only.
+// clamped to 0 … 4; `undefined` that of pixels in which theirs is no finite number, where nothing is compared.
+// `highest`, `lowest` and `bad` (channels that are no finite number) are of our picture alone, colours only.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -111,9 +111,10 @@ class Painter {
     const Json& settings_;
 };
 
-// A difference of two channels, relative to theirs where that is larger than 1.
+// A difference of two channels, relative to theirs where that is larger than 1. Theirs that is no finite number is nothing
+// to compare with.
 double difference(float ours, float theirs) {
-    if (ours == theirs || (std::isnan(ours) && std::isnan(theirs))) return 0;
+    if (ours == theirs || !std::isfinite(theirs)) return 0;
     const double d = std::fabs(double(ours) - double(theirs)) / std::max(1.0, std::fabs(double(theirs)));
     return std::isfinite(d) ? d : 1e9;
 }
@@ -126,21 +127,25 @@ void compare(const Image& ours, const Image& theirs, double tolerance, Json& row
         return;
     }
     double largest = 0, squares = 0;
-    int covered = 0, odd = 0;
+    int covered = 0, odd = 0, undefined = 0;
     for (int y = 0; y < ours.height; y++)
         for (int x = 0; x < ours.width; x++) {
             double pixel = 0;
+            bool defined = true;
             for (int c = 0; c < std::min(theirs.channels, 4); c++) {
                 const float a = ours.at(x, y, c), b = theirs.at(x, y, c);
                 pixel = std::max(pixel, difference(a, b));
-                if (c < 3) squares += (clamped(a) - clamped(b)) * (clamped(a) - clamped(b));
+                defined &= std::isfinite(b);
+                if (c < 3 && std::isfinite(b)) squares += (clamped(a) - clamped(b)) * (clamped(a) - clamped(b));
             }
             covered += ours.at(x, y, 3) != 0 || theirs.at(x, y, theirs.channels - 1) != 0;
             odd += pixel > tolerance;
+            undefined += !defined;
             largest = std::max(largest, pixel);
         }
     row["max"] = largest;
     row["odd"] = double(odd) / std::max(covered, 1);
+    row["undefined"] = double(undefined) / std::max(covered, 1);
     row["rmse"] = std::sqrt(squares / (3.0 * ours.width * ours.height));
 }
 

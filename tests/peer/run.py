@@ -1,5 +1,6 @@
 """What tools/signatures and tools/testsuite share: the compiler, the renderer of pairs, the judges, and the files between."""
 import array
+import hashlib
 import json
 import os
 import pathlib
@@ -69,51 +70,99 @@ class Compiler:
         return errors, codes
 
 
+class Answers:
+    """Answers of shader_pair to jobs of the same texts and settings, kept in build/peer: a run that was broken off goes on,
+    and one after a change draws what the change reaches."""
+
+    def __init__(self):
+        self.file = ROOT / "build/peer/answers.jsonl"
+        self.file.parent.mkdir(parents=True, exist_ok=True)
+        self.known = {}
+        if self.file.exists():
+            for line in self.file.read_text().splitlines():
+                try:
+                    kept = json.loads(line)
+                    self.known[kept["key"]] = kept["answer"]
+                except ValueError:
+                    pass  # the last line of a run that was broken off
+        self.renderer = hashlib.sha256()
+        for source in sorted([ROOT / "tests/peer/pair.cpp", *(ROOT / "src/draw").iterdir(), *(ROOT / "src/scene").iterdir()]):
+            self.renderer.update(source.read_bytes())
+
+    def key(self, job):
+        made = self.renderer.copy()
+        theirs = job.get("theirs", [])
+        for file in [*([theirs] if isinstance(theirs, str) else theirs), *(f for pair in job["ours"] for f in pair)]:
+            made.update(pathlib.Path(file).read_bytes() + b"\0")
+        plain = {k: pathlib.Path(v).name if k in ("pictures", "environment") else v for k, v in job.items()
+                 if k not in ("id", "theirs", "ours")}
+        made.update(json.dumps(plain, sort_keys=True).encode())
+        return made.hexdigest()
+
+    def keep(self, key, answer):
+        self.known[key] = answer
+        with self.file.open("a") as out:
+            out.write(json.dumps({"key": key, "answer": answer}) + "\n")
+
+
 class Pairs:
     """Runs the jobs of shader_pair on as many processes as there are processors. One that dies takes one job with it."""
 
     def __init__(self, exe, workers=None):
-        self.exe, self.workers = exe, workers or os.cpu_count() or 1
+        self.exe, self.workers = exe, workers or int(os.environ.get("SHADERX_WORKERS", 0)) or os.cpu_count() or 1
+        self.kept = Answers()
 
     def run(self, jobs, progress=None):
         """The answers by the jobs' ids. Few samples need no good code of the driver, whose making is what takes the time."""
-        answers = {}
+        keys = {j["id"]: self.kept.key(j) for j in jobs}
+        answers = {i: self.kept.known[k] for i, k in keys.items() if k in self.kept.known}
+        left = [j for j in jobs if j["id"] not in answers]
         for code in ("nopt,no_quad_lod", "no_quad_lod"):
-            part = [j for j in jobs if (j["samples"] * j["size"] < 4096) == code.startswith("nopt")]
-            answers |= self._run(part, code, progress)
+            part = [j for j in left if (j["samples"] * j["size"] < 4096) == code.startswith("nopt")]
+            self._run(part, code, keys, answers, progress)
         return answers
 
-    def _run(self, jobs, code, progress):
-        answers, lock, left = {}, threading.Lock(), list(reversed(jobs))
+    def _run(self, jobs, code, keys, answers, progress):
+        lock, left = threading.Lock(), list(reversed(jobs))
         environment = dict(os.environ, GALLIVM_PERF=code, LP_NUM_THREADS="1", MESA_SHADER_CACHE_DISABLE="true")
 
+        def take():
+            with lock:
+                return left.pop() if left else None
+
+        def ask(process, job):
+            try:
+                process.stdin.write(json.dumps(job) + "\n")
+                process.stdin.flush()
+                return process.stdout.readline()
+            except BrokenPipeError:
+                return ""
+
+        def answered(job, answer):
+            with lock:
+                answers[job["id"]] = answer
+                if "died" not in answer:
+                    self.kept.keep(keys[job["id"]], answer)
+                if progress:
+                    progress(len(answers), len(keys))
+
         def worker():
-            while True:
-                process = subprocess.Popen([self.exe], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
-                while True:
-                    with lock:
-                        job = left.pop() if left else None
-                    if job is None:
-                        process.stdin.close()
-                        process.wait()
-                        return
-                    line = ""
-                    try:
-                        process.stdin.write(json.dumps(job) + "\n")
-                        process.stdin.flush()
-                        line = process.stdout.readline()
-                    except BrokenPipeError:
-                        pass
-                    with lock:
-                        answers[job["id"]] = json.loads(line) if line else {"theirs": "", "ours": [], "died": process.wait()}
-                        if progress:
-                            progress(len(answers), len(jobs))
-                    if not line:
-                        break
+            process = None
+            while job := take():
+                process = process or subprocess.Popen([self.exe], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                                                      env=environment)
+                line = ask(process, job)
+                if line:
+                    answered(job, json.loads(line))
+                else:
+                    answered(job, {"theirs": "", "ours": [], "died": process.wait()})
+                    process = None
+            if process:
+                process.stdin.close()
+                process.wait()
 
         threads = [threading.Thread(target=worker) for _ in range(self.workers)]
         for t in threads:
             t.start()
         for t in threads:
             t.join()
-        return answers

@@ -288,11 +288,12 @@ class Maker:
         """Writes what makes the outputs visible; the elements to draw."""
         elements = []
         for port in self.signature.outputs:
-            how = {"nodename": "tried"}
-            if len(self.signature.outputs) > 1:
-                how["output"] = port.name
-            elements.append((self.show_one(writer, port, how), port.type))
+            elements.append((self.show_one(writer, port, self.link(port)), port.type))
         return elements
+
+    def link(self, port):
+        """How something is connected to an output of what is tried."""
+        return {"nodename": "tried"} | ({"output": port.name} if len(self.signature.outputs) > 1 else {})
 
     def material(self, writer, shader, **more):
         inputs = [("surfaceshader", "surfaceshader", shader)] + [(k, k, v) for k, v in more.items()]

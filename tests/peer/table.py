@@ -50,8 +50,8 @@ class Explained:
 
 
 class Formulas:
-    """Documents that compute what a node without a peer should: formulas/NODEDEF.mtlx holds nodes in which {in1} and the like
-    stand for how the input is fed, and {tried} for the last node's name."""
+    """Documents that compute what a node without a peer should: formulas/NODEDEF.xml holds nodes in which {in1} and the like
+    stand for how the input is fed; the node that gives the output is called `tried`, of several `tried_PORT`."""
 
     def __init__(self):
         self.texts = {f.stem: f.read_text() for f in sorted((HERE / "formulas").glob("*.xml"))}
@@ -70,11 +70,16 @@ class Formulas:
                 fill = {}
                 for port in signature.inputs:
                     fed = given.get(port.name)
-                    if fed is None:
+                    if fed is None and port.geometric == "Nworld":
+                        fed = writer.once("N_world", "normal", "vector3", ("space", "string", {"value": "world"}))
+                    elif fed is None:
                         fed = {"value": port.value or ""}
                     fill[port.name] = " ".join(f'{k}="{v}"' for k, v in fed.items())
                 body = re.sub(r"\{(\w+)\}", lambda m: fill[m[1]], text)
                 writer.lines.append(body.rstrip())
+
+            def link(self, port):
+                return {"nodename": "tried_" + port.name if len(signature.outputs) > 1 else "tried"}
 
         return Formula(signature).build(how, choice)[0]
 
@@ -88,7 +93,9 @@ class Trial:
         self.fault = ""     # why it is not good
         self.no_peer = ""   # why there is nothing to compare with
         self.by_formula = False
-        self.max = self.odd = self.rmse = self.furnace = self.peer_furnace = None
+        self.max = self.odd = self.undefined = self.rmse = self.furnace = self.peer_furnace = None
+        self.bad = 0            # channels of ours that are no finite number
+        self.is_bright = False  # in a white furnace, beyond what the peer is there: emission and sums are no fault
 
     @property
     def is_picture(self):
@@ -101,10 +108,12 @@ class Trial:
     def verdict(self):
         if self.fault:
             return "fails"
-        if self.no_peer:
+        if self.no_peer or self.undefined == 1:
             return "no peer"
+        if self.bad and not self.undefined:
+            return "differs"
         if self.is_picture:
-            good = self.rmse <= PICTURE_LIMIT and not (self.furnace or 0) > FURNACE_LIMIT
+            good = self.rmse <= PICTURE_LIMIT and not self.is_bright
             return ("formula" if self.by_formula else "same") if good else "differs"
         if self.max <= VALUE_LIMIT:
             return "formula" if self.by_formula else "same"
@@ -116,6 +125,7 @@ class Run:
         self.arguments, self.explained, self.formulas = arguments, Explained(), Formulas()
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="shaderx_signatures_"))
         self.compiler, self.pairs = Compiler(arguments.exe), Pairs(arguments.pair)
+        self.drawn = ("live",) if arguments.live else INTERFACES
         self.peer = None
         if not arguments.without_peer:
             from materialx import Peer
@@ -169,7 +179,7 @@ class Run:
                 continue
             job = {"id": trial.id, "pictures": str(self.folder / "grid.pfm"), "size": 32 if trial.is_picture else 48,
                    "samples": 1024 if trial.is_picture else 16, "tolerance": VALUE_LIMIT,
-                   "ours": [self.pair(trial, i) for i in INTERFACES]}
+                   "ours": [self.pair(trial, i) for i in self.drawn]}
             if not trial.no_peer:
                 job["theirs"] = self.pair(trial, "peer")
             jobs.append(job)
@@ -187,17 +197,19 @@ class Run:
             return
         if answer["theirs"] and not trial.no_peer:
             trial.no_peer = "its shader does not draw: " + " ".join(answer["theirs"].split())[:200]
-        for interface, row in zip(INTERFACES, answer["ours"]):
+        for interface, row in zip(self.drawn, answer["ours"]):
             said = row["glslang"] or row["draw"]
+            trial.bad = max(trial.bad, row.get("bad", 0))
             if said and not trial.fault:
                 trial.fault = f"{interface}: {'glslang: ' if row['glslang'] else ''}{' '.join(said.split())[:200]}"
-            for key in ("max", "odd", "rmse"):
+            for key in ("max", "odd", "undefined", "rmse"):
                 if key in row:
                     setattr(trial, key, max(getattr(trial, key) or 0, row[key]))
         furnace = answers.get(trial.id + ":furnace")
         if furnace and furnace["ours"] and "highest" in furnace["ours"][0]:
             trial.furnace = furnace["ours"][0]["highest"]
             trial.peer_furnace = furnace.get("peer", {}).get("highest")
+            trial.is_bright = trial.furnace > max(FURNACE_LIMIT, (trial.peer_furnace or 0) + 0.001)
 
     def run(self):
         write_pictures(self.folder)
@@ -277,7 +289,8 @@ MaterialX {run.peer.version}, Mesa's software driver.
 inputs, with all inputs written, with inputs that change over the sphere, with every value of its enumerations, each output. Each
 element is generated in three interfaces, compiled by glslang, drawn, and compared with MaterialX's shader for the same document:
 `same` is {VALUE_LIMIT} at most in every pixel for values (relative above 1), and {PICTURE_LIMIT} root of the mean squared difference at 1,024
-samples for closures, which must not exceed {FURNACE_LIMIT} in a white furnace either. `edges`: the same but for at most {EDGE_LIMIT:.1%} of the pixels, where a
+samples for closures, which must not exceed {FURNACE_LIMIT} in a white furnace either (or what MaterialX has there: emission, sums). Where
+MaterialX gives no finite number, as for the arc cosine of 2, there is nothing to compare; ours is finite there, too. `edges`: the same but for at most {EDGE_LIMIT:.1%} of the pixels, where a
 node jumps. `formula`: MaterialX has no such node or cannot draw it, and ours is compared with its formula, written with other nodes.
 `explained`: differs, and is listed below with the reason.
 
@@ -307,7 +320,7 @@ def problems_of_table(names):
 
 def show(rows, run):
     for trial in run.trials:
-        figures = " ".join(f"{k} {number(getattr(trial, k))}" for k in ("max", "odd", "rmse", "furnace", "peer_furnace") if getattr(trial, k) is not None)
+        figures = " ".join(f"{k} {number(getattr(trial, k))}" for k in ("max", "odd", "undefined", "rmse", "furnace", "peer_furnace") if getattr(trial, k) is not None)
         print(trial.id, trial.verdict(), figures, trial.fault or trial.no_peer)
     for row in rows:
         print(row["signature"], row["verdict"], row["case"], row["reason"])
@@ -322,6 +335,7 @@ def main():
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--only")
     parser.add_argument("--documents", type=pathlib.Path)
+    parser.add_argument("--live", action="store_true", help="draw one interface of the three")
     parser.add_argument("--keep", action="store_true", help="leave documents and shaders in the temporary folder, and say where")
     parser.add_argument("--exe", default=ROOT / "build/release/shaderx", type=pathlib.Path)
     parser.add_argument("--pair", default=ROOT / "build/release/tests/peer/shader_pair", type=pathlib.Path)
