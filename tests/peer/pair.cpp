@@ -156,10 +156,10 @@ void describe(const Image& ours, Json& row) {
     for (int y = 0; y < ours.height; y++)
         for (int x = 0; x < ours.width; x++) {
             bool seen = false;
-            for (int c = 0; c < 4; c++) seen |= ours.at(x, y, c) != 0;
+            for (int c = 0; c < ours.channels; c++) seen |= ours.at(x, y, c) != 0;
             if (!seen) continue;
             covered++;
-            for (int c = 0; c < 3; c++) {
+            for (int c = 0; c < std::min(ours.channels, 3); c++) {
                 const float v = ours.at(x, y, c);
                 if (!std::isfinite(v)) {
                     bad++;

@@ -20,6 +20,9 @@ RANGES = {"ior": (1.2, 2.2), "exponent": (2.0, 6.0), "thinfilm_thickness": (100.
           "lacunarity": (1.7, 2.3), "temperature": (2000.0, 9000.0), "octaves": (1, 4), "extinction": (1.0, 3.0),
           "in_low": (0.0, 0.2), "inlow": (0.0, 0.2), "inhigh": (0.7, 1.0)}
 
+# Texts that a declaration gives neither a list nor a value for.
+TEXTS = {"geomprop": "tone", "varname": "tone", "attrname": "tone"}
+
 GROUPS = ("thinfilm", "transmission")
 
 
@@ -212,7 +215,7 @@ def constant(port, k):
         return text([low + (high - low) * (0.25 + 0.5 * ((0.37 * k + 0.29 * i) % 1.0)) for i in range(SIZES[port.type])])
     if port.type == "filename":
         return "grid.png"
-    return port.value or None  # texts without a list have no other
+    return port.value or TEXTS.get(port.name)
 
 
 def group_of(port):

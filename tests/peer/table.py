@@ -209,7 +209,7 @@ class Run:
         if furnace and furnace["ours"] and "highest" in furnace["ours"][0]:
             trial.furnace = furnace["ours"][0]["highest"]
             trial.peer_furnace = furnace.get("peer", {}).get("highest")
-            trial.is_bright = trial.furnace > max(FURNACE_LIMIT, (trial.peer_furnace or 0) + 0.001)
+            trial.is_bright = trial.furnace > max(FURNACE_LIMIT, (trial.peer_furnace or 0) * 1.01)
 
     def run(self):
         write_pictures(self.folder)
