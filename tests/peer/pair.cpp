@@ -111,8 +111,8 @@ class Painter {
     const Json& settings_;
 };
 
-// A difference of two channels, relative to theirs where that is larger than 1. Theirs that is no finite number is nothing
-// to compare with.
+// A difference of two channels, relative to theirs where that is larger than 1. Theirs that is no finite number is
+// nothing to compare with.
 double difference(float ours, float theirs) {
     if (ours == theirs || !std::isfinite(theirs)) return 0;
     const double d = std::fabs(double(ours) - double(theirs)) / std::max(1.0, std::fabs(double(theirs)));
