@@ -18,7 +18,8 @@ SIGNED = (-1.7, 1.9)  # the same, in the case `signed`
 # Ranges that a declaration does not give and a node needs to show something, by the input's name.
 RANGES = {"ior": (1.2, 2.2), "exponent": (2.0, 6.0), "thinfilm_thickness": (100.0, 600.0), "thinfilm_ior": (1.2, 1.8),
           "lacunarity": (1.7, 2.3), "temperature": (2000.0, 9000.0), "octaves": (1, 4), "extinction": (1.0, 3.0),
-          "in_low": (0.0, 0.2), "inlow": (0.0, 0.2), "inhigh": (0.7, 1.0)}
+          "operationorder": (0, 1), "min": (0.0, 0.3), "max": (0.6, 1.0), "in_low": (0.0, 0.2), "inlow": (0.0, 0.2),
+          "inhigh": (0.7, 1.0)}
 
 # Texts that a declaration gives neither a list nor a value for.
 TEXTS = {"geomprop": "tone", "varname": "tone", "attrname": "tone"}
