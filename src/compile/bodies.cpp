@@ -6,6 +6,7 @@
 
 #include "base/numbers.h"
 #include "compile/color_conversion.h"
+#include "graph/values.h"
 #include "ir/builder.h"
 #include "passes/decode.h"
 #include "passes/specialise.h"
@@ -22,6 +23,7 @@ NodeBodies::NodeBodies(NameTable& names, const doc::Definitions& definitions, st
       scene_(scene),
       maxDepth_(maxDepth),
       made_(names_) {
+    made_.structs = graph::structsOf(definitions_);
     for (Library* l : libraries_) {
         documents_.push_back(&l->document());
         made_.sources.push_back(l);
@@ -164,7 +166,8 @@ Function NodeBodies::start(doc::NodeDef def) const {
     Function f;
     f.name = nameOf(def);
     f.isInline = true;
-    for (const doc::Port& p : definitions_.inputs(def)) f.params.push_back({p.name, typeNamed(names_.text(p.type))});
+    for (const doc::Port& p : definitions_.inputs(def))
+        f.params.push_back({p.name, graph::typeOf(definitions_, names_.text(p.type))});
     return f;
 }
 
@@ -172,7 +175,8 @@ bool NodeBodies::inlineText(doc::NodeDef def, doc::ElementRef element, std::stri
                             Diagnostics& diagnostics) {
     Function f = start(def);
     std::vector<Param> results;
-    for (const doc::Port& p : definitions_.outputs(def)) results.push_back({p.name, typeNamed(names_.text(p.type))});
+    for (const doc::Port& p : definitions_.outputs(def))
+        results.push_back({p.name, graph::typeOf(definitions_, names_.text(p.type))});
     Location where = element.document->locate(element.id);
     std::string file = fmt::format("{}:{}: {}", where.file, where.line, names_.text(element->name));
     return sl::compileInline(made_, f.name, f.params, results, {file, text}, known(), diagnostics);

@@ -427,6 +427,8 @@ struct Compilation {
         if (graph.outputs.empty()) return refuse("no-output", "the element has no output to compute");
         if (graph.outputs[0].type == ir::Type::Void && graph.outputs[0].source.kind != graph::Source::Kind::Node)
             return refuse("no-output", "the output has neither a type nor a node that tells it");
+        if (ir::isStruct(graph.outputs[0].type))
+            return refuse("no-output", "a structure cannot be shown: only its members can");
         if (isEmptyMaterial()) return refuse("no-shader", "the material has no shader");
         graph.outputs.resize(1);
         if (wants(StageName::Graph)) options.dumps->dump(StageName::Graph, graph::print(graph, definitions));
@@ -467,6 +469,7 @@ struct Compilation {
             if (!near.empty()) e.hint = fmt::format("did you mean '{}'?", near);
             return false;
         }
+        module.structs = bodies.made().structs;
         bool ok = graph::lower(graph, definitions, bodies, {}, pixel, how, module, diagnostics);
         // Textures inside of nodes that graphs implement.
         const std::vector<ir::Uniform>& inside = bodies.made().uniforms;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <span>
 #include <tuple>
+#include <utility>
+
+#include "doc/values.h"
 
 namespace shaderx::doc {
 
@@ -224,6 +227,44 @@ bool Definitions::hasCategory(Name category, Name space) const {
     }
     return std::any_of(layers_.begin(), layers_.end(),
                        [&](const Layer& layer) { return !range(layer, category).empty(); });
+}
+
+const std::vector<StructDef>& Definitions::structs() const {
+    if (!hasStructs_) collectStructs();
+    return structs_;
+}
+
+void Definitions::collectStructs() const {
+    hasStructs_ = true;
+    std::vector<StructDef> waiting;
+    for (const Layer& layer : layers_) {
+        const Document& d = *layer.document;
+        const Name typedefWord = d.names().find("typedef"), member = d.names().find("member");
+        if (!typedefWord || !member) continue;
+        for (ElementId e : children(d, d.root())) {
+            if (d[e].category != typedefWord || !d[e].name) continue;
+            StructDef s{d[e].name, {}};
+            for (ElementId c : children(d, e))
+                if (d[c].category == member && d[c].name)
+                    s.members.push_back({d[c].name, d.attribute(c, d.known().type), d.attribute(c, d.known().value)});
+            if (!s.members.empty()) waiting.push_back(std::move(s));
+        }
+    }
+    // Those whose members are known come first, and so on, until none is left that could be known.
+    auto isDone = [&](Name name) {
+        return std::any_of(structs_.begin(), structs_.end(), [&](const StructDef& s) { return s.name == name; });
+    };
+    for (bool more = !waiting.empty(); more;) {
+        more = false;
+        for (StructDef& s : waiting) {
+            const bool isKnown = std::all_of(s.members.begin(), s.members.end(), [&](const StructDef::Member& m) {
+                return isDone(m.type) || valueType(layers_[0].document->text(m.type));
+            });
+            if (!isKnown || s.members.empty() || isDone(s.name)) continue;
+            structs_.push_back(std::exchange(s, {}));
+            more = true;
+        }
+    }
 }
 
 std::vector<const Document*> Definitions::documents() const {

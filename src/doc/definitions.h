@@ -75,6 +75,16 @@ struct DefinitionsTables {
 };
 DefinitionsTables buildIndex(const Document& document);
 
+// A <typedef> with members: a value made of others.
+struct StructDef {
+    struct Member {
+        Name name, type;
+        Name value;  // its default, may be none
+    };
+    Name name;
+    std::vector<Member> members;
+};
+
 // A nodedef of a Definitions. A default-made one is none.
 struct NodeDef {
     static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -145,6 +155,9 @@ class Definitions {
     const Port* input(NodeDef def, Name name) const;
     const Port* output(NodeDef def, Name name) const;
 
+    // All structures of all documents, each name once, those before it that a member is of; one that holds itself, or
+    // something that is no value, is none. Nothing is searched where no document has any.
+    const std::vector<StructDef>& structs() const;
     // The documents in the order of their layers.
     std::vector<const Document*> documents() const;
     // What implements a nodedef: in each document in turn, one for the first of the targets that has one, else a
@@ -168,7 +181,11 @@ class Definitions {
     NodeDef base(NodeDef def) const;
     Implementation inLayer(const Layer& layer, Name key, bool categoryWide, std::span<const Name> targets) const;
 
+    void collectStructs() const;
+
     std::vector<Layer> layers_;
+    mutable std::vector<StructDef> structs_;
+    mutable bool hasStructs_ = false;                       // collected
     mutable std::unordered_map<std::uint64_t, Flat> flat_;  // of nodedefs that inherit across documents
 };
 

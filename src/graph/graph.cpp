@@ -9,6 +9,7 @@
 
 #include "doc/check.h"
 #include "doc/connect.h"
+#include "graph/values.h"
 
 namespace shaderx::graph {
 
@@ -121,7 +122,7 @@ struct GraphBuilder {
     }
 
     void addOutput(ElementId output) {
-        ir::Type type = ir::typeNamed(d.attributeText(output, d.known().type));
+        ir::Type type = graph::typeOf(definitions, d.attributeText(output, d.known().type));
         Output made{d[output].name, type, {}, output};
         if (resolve(output, made.source)) graph.outputs.push_back(made);
     }
@@ -130,7 +131,7 @@ struct GraphBuilder {
         Source source;
         if (!node(element, source)) return;
         for (const doc::Port& port : graph.kindOf(graph.nodes[source.node.index]).outputs) {
-            graph.outputs.push_back({port.name, ir::typeNamed(d.text(port.type)), source, element});
+            graph.outputs.push_back({port.name, typeOf(port.type), source, element});
             source.output++;
         }
     }
@@ -344,7 +345,7 @@ struct GraphBuilder {
         auto& [known, type] = types[name.index % types.size()];
         if (known != name) {
             known = name;
-            type = ir::typeNamed(d.text(name));
+            type = graph::typeOf(definitions, d.text(name));
         }
         return type;
     }

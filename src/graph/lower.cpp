@@ -76,7 +76,7 @@ struct Lowerer {
         if (implemented) {
             fresh.isInline = true;
             for (const doc::Port& p : definitions.inputs(implemented))
-                fresh.params.push_back({p.name, typeNamed(d.text(p.type))});
+                fresh.params.push_back({p.name, typeOf(definitions, d.text(p.type))});
         }
         results.reserve(graph.nodes.size());
         firstResult.reserve(graph.nodes.size());
@@ -148,7 +148,7 @@ struct Lowerer {
         if (kind.isMet) return;
         kind.isMet = true;
         const NodeKind& of = graph.kindOf(n);
-        for (const doc::Port& o : of.outputs) kind.outputs.push_back(typeNamed(d.text(o.type)));
+        for (const doc::Port& o : of.outputs) kind.outputs.push_back(typeOf(definitions, d.text(o.type)));
         for (const doc::Port& i : of.inputs)
             kind.inputs.push_back({definitions.element(of.def, i).attribute(d.known().defaultgeomprop), {}});
         for (const Input& i : graph.inputsOf(n)) kind.hasFiles = kind.hasFiles || i.type == Type::Texture2D;
@@ -361,7 +361,7 @@ struct Lowerer {
         const doc::Port* port = graph.interface ? definitions.input(graph.interface, name) : nullptr;
         if (!port) return {};
         const doc::ElementRef element = definitions.element(graph.interface, *port);
-        const Type type = typeNamed(d.text(port->type));
+        const Type type = typeOf(definitions, d.text(port->type));
         const std::string_view value = element.attributeText(d.known().value);
         ExprId made;
         if (Name property = element.attribute(d.known().defaultgeomprop))
@@ -369,7 +369,7 @@ struct Lowerer {
         else if (type == Type::Texture2D || (options.interface != Interface::Baked && componentCount(type)))
             made = openUniform(*port, element, type, value);
         else
-            made = constantOf(b, type, value);
+            made = constant(type, value);
         return openInputs[name] = made;
     }
 
@@ -401,7 +401,15 @@ struct Lowerer {
         Words words;
         ExprId value;
         Name live;
-        if (componentCount(type) == 0) {
+        if (isStruct(type)) {
+            value = structConstant(b, definitions, type, text);
+            if (!value) {
+                error(element, "bad-value",
+                      fmt::format("bad value of type {}: expected a value for each member, such as {{0.5; 1}}",
+                                  d.attributeText(element, d.known().type)));
+                return {};
+            }
+        } else if (componentCount(type) == 0) {
             value = constantOf(b, type, text);
         } else if ((given && text.empty()) || !readWords(type, text, words)) {
             std::string problem = "there is none";
@@ -612,7 +620,11 @@ struct Lowerer {
         bool isComplete = options.interface == Interface::Complete && !implemented;
         if (input.type == Type::Texture2D || (isComplete && componentCount(input.type)))
             return inScene(unwritten(input, owner, element, value), element);
-        return usual = inScene(constantOf(b, input.type, value), element);
+        return usual = inScene(constant(input.type, value), element);
+    }
+
+    ExprId constant(Type type, std::string_view text) {
+        return isStruct(type) ? structConstant(b, definitions, type, text) : constantOf(b, type, text);
     }
 
     // A colour that a nodedef gives, in the working space.

@@ -1,5 +1,8 @@
 #include "graph/values.h"
 
+#include <algorithm>
+
+#include "base/numbers.h"
 #include "doc/values.h"
 
 namespace shaderx::graph {
@@ -67,6 +70,63 @@ std::vector<std::uint32_t> wordsOf(Type type, std::string_view text) {
     Words words;
     if (!readWords(type, text, words)) return {};
     return {words.all().begin(), words.all().end()};
+}
+
+Type typeOf(const doc::Definitions& definitions, std::string_view name) {
+    const Type builtIn = typeNamed(name);
+    if (builtIn != Type::Void || name.empty() || name == "void") return builtIn;
+    const std::vector<doc::StructDef>& structs = definitions.structs();
+    if (structs.empty()) return Type::Void;
+    const NameTable& names = definitions.documents()[0]->names();
+    for (std::size_t i = 0; i < structs.size(); i++)
+        if (names.text(structs[i].name) == name) return structType(i);
+    return Type::Void;
+}
+
+std::vector<StructType> structsOf(const doc::Definitions& definitions) {
+    std::vector<StructType> all;
+    for (const doc::StructDef& s : definitions.structs()) {
+        StructType& made = all.emplace_back();
+        made.name = s.name;
+        const NameTable& names = definitions.documents()[0]->names();
+        for (const doc::StructDef::Member& m : s.members)
+            made.members.push_back({m.name, typeOf(definitions, names.text(m.type))});
+    }
+    return all;
+}
+
+// The text of a structure's next member, taken off the front: up to a semicolon that no braces enclose.
+static std::string_view nextMember(std::string_view& text) {
+    int depth = 0;
+    std::size_t at = 0;
+    for (; at < text.size(); at++) {
+        if (text[at] == '{') depth++;
+        if (text[at] == '}') depth--;
+        if (text[at] == ';' && depth == 0) break;
+    }
+    const std::string_view found = trim(text.substr(0, at));
+    text.remove_prefix(std::min(text.size(), at + 1));
+    return found;
+}
+
+ExprId structConstant(Builder& b, const doc::Definitions& definitions, Type type, std::string_view text) {
+    const doc::StructDef& s = definitions.structs()[structIndex(type)];
+    text = trim(text);
+    if (!text.empty()) {
+        if (text.size() < 2 || text.front() != '{' || text.back() != '}') return {};
+        text = text.substr(1, text.size() - 2);
+    }
+    std::vector<ExprId> parts;
+    for (const doc::StructDef::Member& m : s.members) {
+        const NameTable& names = *b.module().names;
+        const Type of = typeOf(definitions, names.text(m.type));
+        std::string_view value = nextMember(text);
+        if (value.empty()) value = names.text(m.value);
+        const ExprId part = isStruct(of) ? structConstant(b, definitions, of, value) : constantOf(b, of, value);
+        if (!part) return {};
+        parts.push_back(part);
+    }
+    return trim(text).empty() ? b.emit(Op::Make, type, parts) : ExprId();
 }
 
 ExprId constantOf(Builder& b, Type type, std::string_view text) {

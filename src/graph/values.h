@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "doc/definitions.h"
 #include "ir/builder.h"
 
 namespace shaderx::graph {
@@ -26,6 +27,16 @@ bool readWords(ir::Type type, std::string_view text, Words& words, std::string* 
 
 // The same as a list, zeros for an empty text; empty where the text is not such a value.
 std::vector<std::uint32_t> wordsOf(ir::Type type, std::string_view text);
+
+// The type of a name: one that is built in, or a structure of the documents; Void where there is neither.
+ir::Type typeOf(const doc::Definitions& definitions, std::string_view name);
+
+// The structures of the documents, as a module holds them.
+std::vector<ir::StructType> structsOf(const doc::Definitions& definitions);
+
+// The constant of a structure: "{0.5; {1; 2}}" has a value for each member, and what is missing is the member's
+// default. None where the text is no such value.
+ir::ExprId structConstant(ir::Builder& b, const doc::Definitions& definitions, ir::Type type, std::string_view text);
 
 // The constant that a value's text means, or none where it means none. Closures and empty texts give the null value.
 ir::ExprId constantOf(ir::Builder& b, ir::Type type, std::string_view text);

@@ -324,6 +324,8 @@ struct Simplifier {
                     return b.make(type, parts);
                 }
                 return {};
+            case Op::Member:
+                return member();
             case Op::Index:
                 if (isVector(expr(x[0]).type) && isNumber(x[1])) {
                     int i = static_cast<int>(f().constantWords(x[1])[0]);
@@ -379,7 +381,18 @@ struct Simplifier {
         return isVector(expr(c).type) ? fit(c) : ExprId();
     }
 
+    // A structure is what it was made of; of a choice, the choice of the members.
+    ExprId member() {
+        if (is(x[0], Op::Make)) return f().operand(x[0], payload);
+        if (is(x[0], Op::Constant)) return zero();
+        if (!is(x[0], Op::Select)) return {};
+        const ExprId condition = f().operand(x[0], 0), then = f().operand(x[0], 1), otherwise = f().operand(x[0], 2);
+        const ExprId ofThen = b.emit(Op::Member, type, {then}, payload);
+        return b.select(condition, ofThen, b.emit(Op::Member, type, {otherwise}, payload));
+    }
+
     ExprId make() {
+        if (isStruct(type)) return {};
         if (x.size() == 1 && expr(x[0]).type == type) return x[0];
         if (isMatrix(type)) return upperPart();
         if (x.size() == 1 && isVector(expr(x[0]).type)) return fit(x[0]);

@@ -85,6 +85,13 @@ inline constexpr std::array<std::uint8_t, kBuiltinTypes + 1> kComponents = [] {
     return counts;
 }();
 constexpr int componentCount(Type t) { return t < Type::FirstStruct ? kComponents[static_cast<std::size_t>(t)] : 0; }
+constexpr bool isStruct(Type t) { return t >= Type::FirstStruct; }
+constexpr std::size_t structIndex(Type t) {
+    return static_cast<std::size_t>(t) - static_cast<std::size_t>(Type::FirstStruct);
+}
+constexpr Type structType(std::size_t index) {
+    return static_cast<Type>(static_cast<std::size_t>(Type::FirstStruct) + index);
+}
 inline bool isClosure(Type t) { return t >= Type::BSDF && t <= Type::Material; }
 inline bool isScalar(Type t) { return componentCount(t) == 1; }
 inline bool isMatrix(Type t) { return t == Type::Matrix33 || t == Type::Matrix44; }

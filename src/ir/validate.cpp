@@ -259,6 +259,8 @@ struct Validator {
             case Op::Not:
             case Op::Known:
             case Op::Make:
+                if (isStruct(e.type)) return structure(id);
+                return executable(id);
             case Op::Swizzle:
             case Op::Convert:
             case Op::Retype:
@@ -313,10 +315,16 @@ struct Validator {
     void member(ExprId id) {
         const Type from = operandType(id, 0);
         if (from < Type::FirstStruct) return fail(id, 0, "only structures have members");
-        const StructType& s =
-            module.structs[static_cast<std::size_t>(from) - static_cast<std::size_t>(Type::FirstStruct)];
+        const StructType& s = module.structs[structIndex(from)];
         if (f[id].payload >= s.members.size()) return fail(id, kWhole, "no such member");
         expectType(id, s.members[f[id].payload].type);
+    }
+
+    void structure(ExprId id) {
+        const StructType& s = module.structs[structIndex(f[id].type)];
+        if (s.members.size() != f[id].operandCount)
+            return fail(id, kWhole, "not as many values as the structure has members");
+        for (int k = 0; k < f[id].operandCount; k++) expectOperand(id, k, s.members[static_cast<std::size_t>(k)].type);
     }
 
     void texture(ExprId id) {

@@ -38,6 +38,7 @@ ExprId Lowering::call(const Node& n, bool isStatement) {
     bool isUser = program.functions.has(n.name);
     std::string_view word = text(n.name);
     if (!isUser && (word == "attribute" || word == "geomprop")) return geometricAttribute(n);
+    if (!isUser && structNamed(n.name)) return makeStruct(n);
     std::vector<Argument> args = arguments(n, isUser);
     std::vector<ArgumentType> types;
     for (const Argument& a : args) types.push_back({a.type, a.place.has_value()});
@@ -121,6 +122,29 @@ void Lowering::noFunction(const Node& n, const Choice& choice, const std::vector
         for (std::size_t k = 0; k < choice.candidates.size() && k < kTold; k++)
             d.notes.push_back({{}, signatureText(*program.module.names, *choice.candidates[k])});
     }
+}
+
+const ir::StructType* Lowering::structNamed(Name name) const {
+    for (const ir::StructType& s : program.module.structs)
+        if (s.name == name) return &s;
+    return nullptr;
+}
+
+// A structure by its name, from a value for each of its members.
+ExprId Lowering::makeStruct(const Node& n) {
+    const ir::StructType& s = *structNamed(n.name);
+    const auto index = static_cast<std::size_t>(&s - program.module.structs.data());
+    std::vector<ExprId> parts;
+    for (std::uint32_t k = 0; k < n.children.count; k++) {
+        const ExprId given = expression(tree.child(n, k));
+        if (!given) return {};
+        const ExprId part = k < s.members.size() ? b.convert(given, s.members[k].type) : ExprId();
+        if (part) parts.push_back(part);
+    }
+    if (parts.size() == s.members.size() && parts.size() == n.children.count)
+        return b.emit(Op::Make, ir::structType(index), parts);
+    report.error(n.offset, "no-overload", fmt::format("'{}' takes a value for each of its members", text(n.name)));
+    return {};
 }
 
 // attribute("texcoord_0", vector2): the attribute of that very name; geomprop(text, vector2): the one that the host

@@ -274,11 +274,26 @@ ExprId Lowering::member(NodeId id) {
     // Of a variable only the components in question need values.
     if (auto place = placeOf(id, false)) return read(*place, variables[place->variable], n.offset);
     ExprId value = expression(tree.child(n, 0));
+    if (value && ir::isStruct(b.type(value))) return structMember(n, value);
     Place place;
     if (!value || !componentsOf(n, b.type(value), true, place)) return {};
     if (place.count == 1) return component(value, place.at[0]);
     int* at = place.at;
     return b.swizzle(value, ir::swizzleMask(place.count, at[0], at[1], at[2], at[3]));
+}
+
+ExprId Lowering::structMember(const Node& n, ExprId value) {
+    const ir::StructType& s = program.module.structs[ir::structIndex(b.type(value))];
+    for (std::uint32_t k = 0; k < s.members.size(); k++)
+        if (s.members[k].name == n.name) return b.emit(Op::Member, s.members[k].type, {value}, k);
+    Diagnostic& d =
+        report.error(n.offset, "unknown-member",
+                     fmt::format("{} has no member {}", program.module.names->text(s.name), quoted(text(n.name))));
+    std::vector<std::string_view> names;
+    for (const ir::Param& m : s.members) names.push_back(program.module.names->text(m.name));
+    if (std::string_view near = nearest(text(n.name), names); !near.empty())
+        d.hint = fmt::format("did you mean '{}'?", near);
+    return {};
 }
 
 ExprId Lowering::index(NodeId id) {

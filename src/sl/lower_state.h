@@ -148,6 +148,9 @@ struct Lowering {
     ExprId binary(NodeId n);
     ExprId conditional(const Node& n);
     ExprId member(NodeId n);
+    ExprId structMember(const Node& n, ExprId value);
+    const ir::StructType* structNamed(Name name) const;
+    ExprId makeStruct(const Node& n);
     ExprId index(NodeId n);
     bool componentsOf(const Node& n, Type type, bool tell, Place& place);
     std::optional<Place> placeOf(NodeId n, bool tell);
