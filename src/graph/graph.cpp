@@ -108,6 +108,7 @@ struct GraphBuilder {
         if (scope && d[scope].category == k.nodegraph) {
             graph.interface = definitions.implementedBy(d, scope);
             if (graph.interface || doc::isFunctional(d, scope)) functional = scope;
+            if (functional && !graph.interface) return noInterface(scope);
         }
         if (category == k.nodegraph) {
             for (ElementId c : doc::children(d, element))
@@ -119,6 +120,15 @@ struct GraphBuilder {
             addNode(element);
         }
         return ok;
+    }
+
+    // A nodegraph that implements a nodedef which does not exist: nobody knows the types and values of its inputs.
+    bool noInterface(ElementId scope) {
+        graph.visited.push_back(scope);
+        const Name nodedef = d.attribute(scope, d.known().nodedef);
+        error(scope, "dangling-nodedef",
+              nodedef ? fmt::format("there is no nodedef '{}'", d.text(nodedef)) : "the nodedef that this implements does not exist");
+        return false;
     }
 
     void addOutput(ElementId output) {
