@@ -127,7 +127,8 @@ struct GraphBuilder {
         graph.visited.push_back(scope);
         const Name nodedef = d.attribute(scope, d.known().nodedef);
         error(scope, "dangling-nodedef",
-              nodedef ? fmt::format("there is no nodedef '{}'", d.text(nodedef)) : "the nodedef that this implements does not exist");
+              nodedef ? fmt::format("there is no nodedef '{}'", d.text(nodedef))
+                      : "the nodedef that this implements does not exist");
         return false;
     }
 
