@@ -113,6 +113,29 @@ TEST(Diagnostics, FormatsPlacePathNotesAndHint) {
     EXPECT_FALSE(all.hasInternal());
 }
 
+TEST(Diagnostics, WhatTerminalsObeyIsWrittenOut) {
+    EXPECT_EQ(visible("plain 'ä' → 日本 \U0001F600"), "plain 'ä' → 日本 \U0001F600");
+    EXPECT_EQ(visible("\x1b[31mred\x7f"), "\\x1b[31mred\\x7f");
+    EXPECT_EQ(visible("a\nb\rc\td"), "a\\nb\\rc\\td");
+    EXPECT_EQ(visible("\u009b31m"), "\\x9b31m");                       // the one-character form of ESC [
+    EXPECT_EQ(visible("\u202egnp.\u2066"), "\\u202egnp.\\u2066");      // would be read from the right
+    EXPECT_EQ(visible("\xc3(\xff\xe2\x80"), "\\xc3(\\xff\\xe2\\x80");  // no UTF-8, and cut off
+    EXPECT_EQ(visible(std::string_view("\0", 1)), "\\x00");
+}
+
+TEST(Diagnostics, NothingOfTheUsersReachesATerminalAsItIs) {
+    Diagnostics all;
+    Diagnostic& d = all.error("dangling-nodename", "there is no node 'x\ngood.mtlx:1:1: error: forged'");
+    d.where = {"a\x1b.mtlx", 1, 2};
+    d.path = "\rpath";
+    d.notes.push_back({{"b\n.mtlx", 1, 1}, "in f:\n    %0 = 1\nforged"});
+    d.hint = "did you mean '\u202e'?";
+    EXPECT_EQ(all.text(),
+              "a\\x1b.mtlx:1:2: error: there is no node 'x\\ngood.mtlx:1:1: error: forged' [dangling-nodename]\n"
+              "  at: \\rpath\n  note: b\\n.mtlx:1:1: in f:\n    %0 = 1\\nforged\n"
+              "  hint: did you mean '\\u202e'?\n");
+}
+
 TEST(Diagnostics, LocateCountsFromOne) {
     EXPECT_EQ(locate("f", "a\nbc\n", 3).line, 2u);
     EXPECT_EQ(locate("f", "a\nbc\n", 3).column, 2u);

@@ -17,8 +17,58 @@ Location locate(std::string_view file, std::string_view text, std::size_t offset
     return where;
 }
 
+// The character at the start of a text and how many bytes it takes; a byte that is no UTF-8 stands for itself.
+static char32_t characterAt(std::string_view text, std::size_t& size) {
+    auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char first = byte(0);
+    size = first < 0xC0 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
+    char32_t c = size == 1 ? first : first & (0x7Fu >> size);
+    bool whole = size <= text.size() && (first < 0x80 || size > 1);
+    for (std::size_t i = 1; whole && i < size; i++) {
+        whole = (byte(i) & 0xC0) == 0x80;
+        c = c << 6 | (byte(i) & 0x3Fu);
+    }
+    if (!whole) size = 1;
+    return whole ? c : first;
+}
+
+// Characters that move the cursor, set colours, end the line or turn the direction of the text around them.
+static bool isControl(char32_t c) {
+    return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x61C || c == 0x200E || c == 0x200F || c == 0x2028 ||
+           c == 0x2029 || (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
+}
+
+std::string visible(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    while (!text.empty()) {
+        std::size_t size = 1;
+        const char32_t c = characterAt(text, size);
+        if (!isControl(c) && (c < 0x80 || size > 1)) {
+            out += text.substr(0, size);
+        } else if (c == '\n' || c == '\r' || c == '\t') {
+            out += c == '\n' ? "\\n" : c == '\r' ? "\\r" : "\\t";
+        } else {
+            constexpr char kDigits[] = "0123456789abcdef";
+            out += c < 0x100 ? "\\x" : "\\u";
+            for (int shift = c < 0x100 ? 4 : 12; shift >= 0; shift -= 4) out += kDigits[c >> shift & 15];
+        }
+        text.remove_prefix(size);
+    }
+    return out;
+}
+
+// A note may show a line of a program below itself, set in.
+static std::string visibleNote(std::string_view text) {
+    constexpr std::string_view kBelow = "\n    ";
+    std::string out;
+    for (std::size_t at; (at = text.find(kBelow)) != std::string_view::npos; text.remove_prefix(at + kBelow.size()))
+        out.append(visible(text.substr(0, at))).append(kBelow);
+    return out + visible(text);
+}
+
 static std::string prefix(const Location& where) {
-    std::string out = where.file;
+    std::string out = visible(where.file);
     if (where.line) out += ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
     if (!out.empty()) out += ": ";
     return out;
@@ -28,10 +78,10 @@ std::string format(const Diagnostic& d) {
     const char* kind = d.severity == Severity::Warning ? "warning: "
                        : d.severity == Severity::Error ? "error: "
                                                        : "internal error: ";
-    std::string out = prefix(d.where) + kind + d.message + " [" + d.code + "]\n";
-    if (!d.path.empty()) out += "  at: " + d.path + "\n";
-    for (const Note& n : d.notes) out += "  note: " + prefix(n.where) + n.message + "\n";
-    if (!d.hint.empty()) out += "  hint: " + d.hint + "\n";
+    std::string out = prefix(d.where) + kind + visible(d.message) + " [" + d.code + "]\n";
+    if (!d.path.empty()) out += "  at: " + visible(d.path) + "\n";
+    for (const Note& n : d.notes) out += "  note: " + prefix(n.where) + visibleNote(n.message) + "\n";
+    if (!d.hint.empty()) out += "  hint: " + visible(d.hint) + "\n";
     return out;
 }
 

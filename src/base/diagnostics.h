@@ -36,7 +36,12 @@ struct Diagnostic {
     std::string hint;  // "did you mean 'base_color'?", may be empty
 };
 
-// `file:line:col: error: message [code]`, then the node path, notes and hint, one a line, each with a line end.
+// The text with what a terminal would obey in place of showing it, written out: control characters (C0, C1, DEL), line
+// ends, marks that turn the direction of text, and bytes that are no UTF-8, as \n, \x1b or \u202e.
+std::string visible(std::string_view text);
+
+// `file:line:col: error: message [code]`, then the node path, notes and hint, one a line, each with a line end. What
+// comes from the user is made visible.
 std::string format(const Diagnostic& d);
 
 // Collects the diagnostics of a compilation in the order in which they were found.
