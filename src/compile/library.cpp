@@ -14,10 +14,12 @@ namespace {
 // The files of the library itself are what its includes may name.
 struct OwnFiles final : doc::Resolver {
     std::map<std::string, std::string, std::less<>> texts;
-    std::optional<doc::ResolvedFile> resolve(std::string_view href, std::string_view) override {
-        auto it = texts.find(href);
+    std::optional<doc::ResolvedFile> resolve(std::string_view href, std::string_view from) override {
+        auto it = texts.find(doc::normalPath(href));
+        if (it == texts.end() && !from.empty())
+            it = texts.find(doc::normalPath(std::string(from).append("/").append(href)));
         if (it == texts.end()) return {};
-        return doc::ResolvedFile{it->first, {}, it->second};
+        return doc::ResolvedFile{it->first, doc::directoryOf(it->first), it->second};
     }
 };
 
@@ -37,10 +39,12 @@ class TextLibrary final : public Library {
             "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n";
         for (const LibraryFile& f : files)
             if (endsWith(f.name, ".mtlx")) {
-                own.texts[f.name] = f.text;
+                own.texts[doc::normalPath(f.name)] = f.text;
                 std::string escaped;
                 for (char c : f.name)
-                    escaped += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+                    escaped += c == '&' || c == '<' || c == '"' || static_cast<unsigned char>(c) < 0x20
+                                   ? "&#" + std::to_string(c) + ";"
+                                   : std::string(1, c);
                 root += "<xi:include href=\"" + escaped + "\"/>\n";
             }
         root += "</materialx>\n";

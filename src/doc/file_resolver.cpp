@@ -1,5 +1,6 @@
 #include "doc/file_resolver.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -38,14 +39,38 @@ bool FileResolver::isWithin(std::string_view path) const {
     return false;
 }
 
+// The same for the file that is opened in the end, whatever links are on the way. The directories may be links too.
+bool FileResolver::leadsWithin(const std::string& path) const {
+    namespace fs = std::filesystem;
+    auto real = [](std::string_view file) {
+        std::error_code failed;
+        fs::path found = fs::canonical(file.empty() ? fs::path(".") : fs::path(file), failed);
+        return failed ? std::string() : found.string();
+    };
+    const std::string file = real(path);
+    auto holds = [&](std::string_view directory) {
+        const std::string top = real(directory);
+        return !top.empty() && isBelow(file, top);
+    };
+    if (file.empty()) return false;
+    return holds(*root_) || std::any_of(searchPaths_.begin(), searchPaths_.end(), holds);
+}
+
 std::optional<ResolvedFile> FileResolver::resolve(std::string_view href, std::string_view fromDirectory) {
     if (!root_) root_ = std::string(fromDirectory);
+    leftByLink_ = false;
     auto tryIn = [&](std::string_view directory) -> std::optional<ResolvedFile> {
         std::string path;
         bool absolute = href.starts_with('/') || (href.size() > 1 && href[1] == ':');
         if (!absolute && !directory.empty()) path.append(directory).append("/");
         path = normalPath(path.append(href));
-        std::optional<std::string> text = isWithin(path) ? readFile(path, maxBytes_) : std::nullopt;
+        if (!isWithin(path)) return {};
+        if (!followsLinks_ && !leadsWithin(path)) {
+            std::error_code ignored;
+            leftByLink_ = leftByLink_ || std::filesystem::is_regular_file(path, ignored);
+            return {};
+        }
+        std::optional<std::string> text = readFile(path, maxBytes_);
         if (!text) return {};
         std::string directoryOfFile = directoryOf(path);
         return ResolvedFile{std::move(path), std::move(directoryOfFile), std::move(*text)};
@@ -54,6 +79,11 @@ std::optional<ResolvedFile> FileResolver::resolve(std::string_view href, std::st
     for (const std::string& directory : searchPaths_)
         if (auto found = tryIn(directory)) return found;
     return {};
+}
+
+std::string FileResolver::hint() const {
+    return leftByLink_ ? "a symbolic link leads out of the document's folder and the search paths; --follow-links takes it"
+                       : "";
 }
 
 }  // namespace shaderx::doc

@@ -380,7 +380,8 @@ void Reader::include(ElementId mark) {
     if (!found) {
         std::string message = fmt::format("cannot find the included file '{}'", href);
         Diagnostic& d = fail("missing-include", std::move(message));
-        if (href.starts_with('/') || href.find("..") != std::string_view::npos)
+        d.hint = resolver.hint();
+        if (d.hint.empty() && (href.starts_with('/') || href.find("..") != std::string_view::npos))
             d.hint = "files are only taken from the document's own folder, from search paths, and from below these";
         return;
     }

@@ -22,6 +22,8 @@ struct Resolver {
     virtual ~Resolver() = default;
     // None where there is no such file.
     virtual std::optional<ResolvedFile> resolve(std::string_view href, std::string_view fromDirectory) = 0;
+    // Why it found the last one not to be there, where there is more to say.
+    virtual std::string hint() const { return {}; }
 };
 
 // A resolver for documents that stand alone: every include is missing.

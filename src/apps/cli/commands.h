@@ -13,6 +13,8 @@ enum ExitCode { kDone = 0, kInputErrors = 1, kBadUsage = 2, kOurBug = 3 };
 struct Options {
     std::vector<std::string> files, paths, libraries, limits;
     std::string out = ".", target = "glsl", element, interface = "live", dump;
+    bool followsLinks = false, strict = false;
+    std::string unknown = "error";
     // of the shaders that are made
     std::string light = "fis", unit = "meter", colorspace = "lin_rec709";
     bool flipV = false, transparency = false, blocks = false;

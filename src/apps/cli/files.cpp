@@ -1,5 +1,6 @@
 #include "apps/cli/files.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -46,9 +47,18 @@ std::optional<doc::ResolvedFile> RecallingResolver::resolve(std::string_view hre
     return found == kept_.includes.end() ? std::nullopt : found->second;
 }
 
+// Where a file is written to before it takes its name: in the same folder, and no longer than a name may be.
+static std::string besideOf(const std::string& file) {
+    constexpr std::size_t kLongest = 255;  // bytes of a name on usual file systems
+    const std::string end = ".part" + std::to_string(getpid());
+    const std::size_t start = file.find_last_of('/') + 1;
+    const std::size_t length = std::min(file.size() - start, kLongest - end.size());
+    return file.substr(0, start + length) + end;
+}
+
 bool writeFile(const std::string& file, std::string_view text, Diagnostics& diagnostics) {
     bool console = file == "-";
-    std::string beside = file + ".part" + std::to_string(getpid());
+    std::string beside = besideOf(file);
     std::FILE* out = console ? stdout : std::fopen(beside.c_str(), "wb");
     bool ok = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
     if (out) ok = (console ? std::fflush(out) : std::fclose(out)) == 0 && ok;
@@ -69,21 +79,28 @@ bool makeFolder(const std::string& folder, Diagnostics& diagnostics) {
 
 bool readLibrary(const std::string& folder, std::vector<LibraryFile>& files, Diagnostics& diagnostics) {
     std::error_code failed;
-    fs::directory_iterator it(folder, failed);
+    fs::recursive_directory_iterator it(folder, failed);
+    std::vector<std::string> found;
+    for (; !failed && it != fs::recursive_directory_iterator(); it.increment(failed)) {
+        const std::string extension = it->path().extension().string();
+        if (extension == ".mtlx" || extension == ".sl") found.push_back(it->path().string());
+    }
     if (failed) {
         diagnostics.error("cannot-read", "cannot read this folder").where.file = folder;
         return false;
     }
+    if (found.empty()) {
+        Diagnostic& w = diagnostics.warning("empty-library", "the folder has no .mtlx and no .sl file");
+        w.where.file = folder;
+    }
+    std::sort(found.begin(), found.end());
     bool ok = true;
-    for (; it != fs::directory_iterator(); it.increment(failed)) {
-        if (failed) break;
-        std::string extension = it->path().extension().string();
-        if (extension != ".mtlx" && extension != ".sl") continue;
-        LibraryFile file{it->path().filename().string(), {}};
-        ok = readInput(it->path().string(), file.text, diagnostics) && ok;
+    for (std::string& name : found) {
+        LibraryFile file{std::move(name), {}};
+        ok = readInput(file.name, file.text, diagnostics) && ok;
         files.push_back(std::move(file));
     }
-    return ok && !failed;
+    return ok;
 }
 
 std::string stemOf(const std::string& file) { return file == "-" ? "stdin" : fs::path(file).stem().string(); }

@@ -51,7 +51,7 @@ bool writeFile(const std::string& file, std::string_view text, Diagnostics& diag
 // Makes a folder and those above it.
 bool makeFolder(const std::string& folder, Diagnostics& diagnostics);
 
-// The .mtlx and .sl files of a folder.
+// The .mtlx and .sl files of a folder and of those below it, in the order of their paths. Says where there is none.
 bool readLibrary(const std::string& folder, std::vector<LibraryFile>& files, Diagnostics& diagnostics);
 
 // "dir/gold.mtlx" as "gold"; standard input as "stdin".

@@ -15,6 +15,12 @@ void common(CLI::App& command, Options& o) {
         ->allow_extra_args(false);
     command.add_option("--library", o.libraries, "a folder with more node definitions; may be repeated")
         ->allow_extra_args(false);
+    command.add_flag("--follow-links", o.followsLinks, "take included files to which symbolic links lead elsewhere");
+    command.add_flag("--strict", o.strict, "what is worth a warning is an error");
+    command
+        .add_option("--unknown", o.unknown,
+                    "default: nodes that nothing defines are a warning, and what reads them takes its default")
+        ->check(CLI::IsMember({"error", "default"}));
     command.add_option("--limit", o.limits, "NAME=NUMBER: a limit of what is taken in; docs/robustness.md lists them")
         ->allow_extra_args(false);
 }

@@ -78,7 +78,7 @@ std::unique_ptr<doc::Document> Session::read(const std::string& file, KeptFiles*
     Diagnostics diagnostics;
     std::string text;
     std::unique_ptr<doc::Document> document;
-    doc::FileResolver files(options.paths, limits.read.maxFileBytes);
+    doc::FileResolver files(options.paths, limits.read.maxFileBytes, options.followsLinks);
     RememberingResolver remembering(files, kept);
     doc::Resolver& resolver = kept ? static_cast<doc::Resolver&>(remembering) : files;
     const bool isKnown = kept && kept->text;
