@@ -85,14 +85,14 @@ std::string format(const Diagnostic& d) {
     return out;
 }
 
+Diagnostic& Diagnostics::add(Diagnostic diagnostic) {
+    if (diagnostic.severity != Severity::Warning) errors_++;
+    if (diagnostic.severity == Severity::Internal) internals_++;
+    return all_.emplace_back(std::move(diagnostic));
+}
+
 Diagnostic& Diagnostics::add(Severity severity, std::string_view code, std::string message) {
-    if (severity != Severity::Warning) errors_++;
-    if (severity == Severity::Internal) internals_++;
-    Diagnostic& d = all_.emplace_back();
-    d.severity = severity;
-    d.code = code;
-    d.message = std::move(message);
-    return d;
+    return add(Diagnostic{severity, std::string(code), std::move(message), {}, {}, {}, {}});
 }
 
 std::string Diagnostics::text() const {

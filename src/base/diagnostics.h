@@ -48,6 +48,7 @@ std::string format(const Diagnostic& d);
 class Diagnostics {
   public:
     Diagnostic& add(Severity severity, std::string_view code, std::string message);
+    Diagnostic& add(Diagnostic diagnostic);
     Diagnostic& error(std::string_view code, std::string message) {
         return add(Severity::Error, code, std::move(message));
     }

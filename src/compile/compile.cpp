@@ -703,7 +703,7 @@ std::vector<std::uint8_t> packLibrary(std::vector<LibraryFile> files, Diagnostic
         if (!library) return false;
         doc::Definitions definitions;
         definitions.add(library->document(), library->index());
-        bool valid = doc::validate(library->document(), definitions, diagnostics);
+        bool valid = doc::validate(library->document(), definitions, diagnostics, {false, true});
         NodeBodies bodies(names, definitions, {library.get()});
         for (const doc::NodeDefRow& row : library->index().nodedefs)
             if (doc::NodeDef def = definitions.byName(row.name); definitions.implementation(def))

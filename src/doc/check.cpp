@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "doc/check_cycles.h"
+#include "doc/check_unused.h"
 #include "doc/color_spaces.h"
 #include "doc/connect.h"
 #include "doc/values.h"
@@ -18,8 +19,9 @@ using Kind = Connection::Kind;
 struct Checker {
     const Document& d;
     const Definitions& definitions;
-    Diagnostics& diagnostics;
-    const WellKnown& k;
+    const CheckOptions& options;
+    Findings findings{d};
+    const WellKnown& k = d.known();
     Resolved resolved{};
     std::vector<bool> isRead{};  // of graph inputs: an interfacename names it
     int hintsLeft = 100;         // looking for similar names is slow, so a wholly wrong document gets only some hints
@@ -30,10 +32,10 @@ struct Checker {
     bool is(ElementId e, Name category) const { return d[e].category == category; }
 
     Diagnostic& error(std::string_view code, std::string message, ElementId e, Name attr = {}) {
-        Diagnostic& out = diagnostics.error(code, std::move(message));
-        out.where = d.locate(e, attr);
-        out.path = d.path(e);
-        return out;
+        return findings.error(code, std::move(message), e, attr);
+    }
+    Diagnostic& warning(std::string_view code, std::string message, ElementId e, Name attr = {}) {
+        return findings.warning(code, std::move(message), e, attr);
     }
     static void note(Diagnostic& out, std::string message) { out.notes.emplace_back().message = std::move(message); }
     void hint(Diagnostic& out, Name word, const std::vector<std::string_view>& candidates) {
@@ -57,7 +59,9 @@ struct Checker {
     void run();
     void checkName(ElementId e);
     void checkNode(ElementId node);
+    void checkChildren(ElementId node);
     void explain(ElementId node, Match found);
+    void unknownNode(ElementId node);
     void explainInputs(ElementId node, const std::vector<NodeDef>& candidates);
     void checkInput(ElementId input, ElementId owner);
     void checkPort(ElementId port);
@@ -65,6 +69,8 @@ struct Checker {
     void dangling(ElementId port, const Connection& c);
     Name upstreamType(ElementId port, const Connection& c, std::string& source);
     void checkValue(ElementId e);
+    void checkChoice(ElementId port);
+    void checkType(ElementId e);
     void checkNodedef(ElementId e);
     void checkGraph(ElementId e);
     void checkImplementation(ElementId e);
@@ -90,15 +96,30 @@ void Checker::checkName(ElementId e) {
     if (!first || first == e) return;
     Diagnostic& out = error("duplicate-name", fmt::format("the name '{}' is used twice here", text(name)), e, k.name);
     out.notes.push_back({d.locate(first, k.name), "it is first used here"});
+    findings.all.back().other = first;
 }
 
 void Checker::checkValue(ElementId e) {
-    Name value = d.attribute(e, k.value), type = typeOf(e);
-    if (!value || !type) return;
-    std::optional<ValueType> known = valueType(text(type));
-    std::string problem;
-    if (!known || parseValue(*known, text(value), &problem)) return;
-    error("bad-value", fmt::format("bad {} value of '{}': {}", text(type), text(d[e].name), problem), e, k.value);
+    if (!d.attribute(e, k.value)) return;
+    if (std::optional<Diagnostic> found = judgeValue(d, e)) findings.add(std::move(*found), e);
+}
+
+// Whether a node's text is one of those that its nodedef lists.
+void Checker::checkChoice(ElementId port) {
+    if (typeOf(port) != k.string || !d.attribute(port, k.value)) return;
+    NodeDef def = resolved.nodedefs[d[port].parent.index];
+    const Port* declared = def ? definitions.input(def, d[port].name) : nullptr;
+    if (!declared) return;
+    if (std::optional<Diagnostic> found = judgeChoice(d, port, definitions.element(def, *declared)))
+        findings.add(std::move(*found), port);
+}
+
+// Whether the type of a port is one at all.
+void Checker::checkType(ElementId e) {
+    Name type = typeOf(e);
+    if (!type || valueType(text(type)) || type == k.surfaceshader || type == k.material || definitions.hasType(type))
+        return;
+    hint(error("unknown-type", fmt::format("there is no type '{}'", text(type)), e, k.type), type, definitions.types());
 }
 
 std::string Checker::signature(NodeDef def) const {
@@ -131,11 +152,29 @@ void addOnce(std::vector<std::string_view>& words, std::string_view word) {
     if (std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
 }
 
+void Checker::unknownNode(ElementId node) {
+    Name category = d[node].category;
+    std::string message = fmt::format("there is no node <{}>", text(category));
+    if (options.unknownIsDefault) {
+        warning("unknown-node", message + "; what reads it takes its default", node);
+        return;
+    }
+    Diagnostic& out = error("unknown-node", std::move(message), node);
+    if (knownCategories.empty()) knownCategories = definitions.categories();
+    std::vector<std::string_view> names;
+    if (hintsLeft > 0)
+        for (Name n : knownCategories) names.push_back(text(n));
+    hint(out, category, names);
+    if (out.hint.empty())
+        out.hint = "--library adds the definitions of a folder; with --unknown=default its readers take their defaults";
+}
+
 // Says why no nodedef fits a node exactly.
 void Checker::explain(ElementId node, Match found) {
     Name category = d[node].category, type = typeOf(node), space = d.namespaceOf(node);
     Name nodedef = d.attribute(node, k.nodedef), version = d.attribute(node, k.version);
     if (nodedef) {
+        if (!found && options.unknownIsDefault && !definitions.hasCategory(category, space)) return unknownNode(node);
         if (!found) {
             Diagnostic& out =
                 error("dangling-nodedef", fmt::format("there is no nodedef '{}'", text(nodedef)), node, k.nodedef);
@@ -154,15 +193,7 @@ void Checker::explain(ElementId node, Match found) {
         return;
     }
     std::vector<NodeDef> all = definitions.ofCategory(category, space), typed;
-    if (all.empty()) {
-        Diagnostic& out = error("unknown-node", fmt::format("there is no node <{}>", text(category)), node);
-        if (knownCategories.empty()) knownCategories = definitions.categories();
-        std::vector<std::string_view> names;
-        if (hintsLeft > 0)
-            for (Name n : knownCategories) names.push_back(text(n));
-        hint(out, category, names);
-        return;
-    }
+    if (all.empty()) return unknownNode(node);
     std::vector<std::string_view> types, versions;
     for (NodeDef def : all) {
         Name defVersion = definitions.row(def).version;
@@ -228,6 +259,18 @@ void Checker::checkNode(ElementId node) {
     Match found = definitions.match(d, node);
     resolved.nodedefs[node.index] = found.def;
     if (!found.exact) explain(node, found);
+    checkChildren(node);
+}
+
+// A misspelt <input> would do nothing.
+void Checker::checkChildren(ElementId node) {
+    for (ElementId c : children(d, node)) {
+        Name category = d[c].category;
+        if (category == k.input || category == k.output || category == k.token || category == k.parameter) continue;
+        if (text(category).starts_with('#')) continue;
+        hint(warning("ignored-element", fmt::format("a node has no <{}>; it is left out", text(category)), c), category,
+             {"input", "output", "token"});
+    }
 }
 
 // The type of what a port reads, none if it is not known (and said elsewhere).
@@ -314,9 +357,11 @@ void Checker::checkInterface(ElementId port, const Connection& c) {
 void Checker::checkPort(ElementId port) {
     if (!typeOf(port) && d[port].name)
         error("missing-attribute", fmt::format("<{}> needs a type", text(d[port].category)), port);
+    ElementId owner = d[port].parent;
+    if (owner == d.root() || is(owner, k.nodegraph)) checkType(port);
     checkValue(port);
     Connection c = connection(d, port);
-    if (c.kind == Kind::None) return;
+    if (c.kind == Kind::None) return checkChoice(port);
     if (c.kind == Kind::Dangling) return dangling(port, c);
     resolved.targets[port.index] = c.target;
     if (c.kind == Kind::Interface) return checkInterface(port, c);
@@ -348,6 +393,7 @@ void Checker::checkNodedef(ElementId e) {
         if (!is(c, k.input) && !is(c, k.output) && !is(c, k.token)) continue;
         if (!typeOf(c) && d[c].name)
             error("missing-attribute", fmt::format("<{}> needs a type", text(d[c].category)), c);
+        if (!is(c, k.token)) checkType(c);
         checkValue(c);
     }
 }
@@ -360,6 +406,9 @@ void Checker::checkGraph(ElementId e) {
 }
 
 void Checker::checkImplementation(ElementId e) {
+    for (const Attribute& a : d.attributes(e))
+        if (!options.isLibrary && (text(a.name) == "builder" || text(a.name) == "leaf"))
+            error("reserved-attribute", fmt::format("'{}' is for libraries only", text(a.name)), e, a.name);
     Name nodedef = d.attribute(e, k.nodedef), node = d.attribute(e, k.node), graph = d.attribute(e, k.nodegraph);
     Name space = d.namespaceOf(e);
     if (!nodedef && !node) error("missing-attribute", "an implementation needs an attribute 'nodedef' or 'node'", e);
@@ -420,28 +469,21 @@ void Checker::run() {
         bool inGraph = parent == d.root() || is(parent, k.nodegraph);
         if (is(e, k.output) ? inGraph : is(e, k.input) && (inGraph || isNode(d, parent))) checkPort(e);
     }
-    for (std::uint32_t i = 1; i < count; i++) {
-        ElementId e(i), parent = d[e].parent;
-        if (!parent || isRead[i] || !is(e, k.input) || !is(parent, k.nodegraph) || resolved.nodedefs[parent.index])
-            continue;
-        if (d.attribute(parent, k.nodedef)) continue;
-        Diagnostic& out = diagnostics.warning(
-            "unused-input",
-            fmt::format("nothing reads the input '{}' of the nodegraph '{}'", text(d[e].name), text(d[parent].name)));
-        out.where = d.locate(e);
-        out.path = d.path(e);
-    }
-    reportUnknownColorSpaces(d, definitions, diagnostics);
-    reportCycles(d, resolved, diagnostics);
-    reportRecursiveDefinitions(d, definitions, resolved, diagnostics);
+    reportUnused(d, resolved, isRead, findings);
+    Diagnostics spaces;
+    reportUnknownColorSpaces(d, definitions, spaces);
+    for (const Diagnostic& x : spaces.all()) findings.add(x, d.find(x.path));
+    reportCycles(d, resolved, findings);
+    reportRecursiveDefinitions(d, definitions, resolved, findings);
 }
 
 }  // namespace
 
-bool validate(const Document& document, const Definitions& definitions, Diagnostics& diagnostics) {
-    Diagnostics found;
-    Checker checker{document, definitions, found, document.known()};
+std::vector<Finding> findMistakes(const Document& document, const Definitions& definitions,
+                                  const CheckOptions& options) {
+    Checker checker{document, definitions, options};
     checker.run();
+    std::vector<Finding>& found = checker.findings.all;
 
     // The checks go by kind; the reader goes by line.
     auto fileOf = [&](const Diagnostic& x) {
@@ -456,13 +498,22 @@ bool validate(const Document& document, const Definitions& definitions, Diagnost
         auto operator<=>(const Key&) const = default;
     };
     std::vector<Key> order;
-    for (const Diagnostic& x : found.all()) order.push_back({fileOf(x), x.where.line, x.where.column, order.size()});
-    std::sort(order.begin(), order.end());
-    for (const Key& key : order) {
-        const Diagnostic& x = found.all()[key.index];
-        diagnostics.add(x.severity, x.code, "") = x;
+    for (const Finding& x : found) {
+        const Location& where = x.diagnostic.where;
+        order.push_back({fileOf(x.diagnostic), where.line, where.column, order.size()});
     }
-    return !found.hasErrors();
+    std::sort(order.begin(), order.end());
+    std::vector<Finding> sorted;
+    sorted.reserve(found.size());
+    for (const Key& key : order) sorted.push_back(std::move(found[key.index]));
+    return sorted;
+}
+
+bool validate(const Document& document, const Definitions& definitions, Diagnostics& diagnostics,
+              const CheckOptions& options) {
+    const std::size_t errors = diagnostics.errorCount();
+    for (Finding& f : findMistakes(document, definitions, options)) diagnostics.add(std::move(f.diagnostic));
+    return diagnostics.errorCount() == errors;
 }
 
 // The nodegraphs that <implementation> elements link, sorted.

@@ -35,7 +35,7 @@ struct CycleFinder {
     };
     const Document& d;
     const Resolved& resolved;
-    Diagnostics& diagnostics;
+    Findings& findings;
     std::vector<Colour> colours{};
     std::vector<Frame> stack{};
 
@@ -54,8 +54,7 @@ struct CycleFinder {
         std::vector<std::string> names;
         for (auto f = begin; f != stack.end(); ++f) names.push_back(d.path(f->vertex));
         names.push_back(d.path(start));
-        Diagnostic& out = diagnostics.error("cycle", "the connections form a cycle: " + pathText(names));
-        out.where = d.locate(port);
+        Diagnostic& out = findings.error("cycle", "the connections form a cycle: " + pathText(names), port);
         out.path = d.path(isPort(stack.back().vertex) ? port : d[port].parent);
     }
 
@@ -88,7 +87,7 @@ struct RecursionFinder {
     const Document& d;
     const Definitions& definitions;
     const Resolved& resolved;
-    Diagnostics& diagnostics;
+    Findings& findings;
     std::vector<Colour> colours{};
     std::vector<Frame> stack{};
 
@@ -103,10 +102,7 @@ struct RecursionFinder {
         for (auto f = stack.begin(); f != stack.end(); ++f)
             if (f->graph == graph || !names.empty()) names.push_back(d.path(f->graph));
         names.push_back(d.path(graph));
-        Diagnostic& out =
-            diagnostics.error("cycle", "the nodegraph uses the node that it implements: " + pathText(names));
-        out.where = d.locate(node);
-        out.path = d.path(node);
+        findings.error("cycle", "the nodegraph uses the node that it implements: " + pathText(names), node);
     }
     void visit(ElementId start) {
         colours[start.index] = Colour::Grey;
@@ -131,7 +127,7 @@ struct RecursionFinder {
     }
 };
 
-void reportInheritCycles(const Document& d, const Definitions& definitions, Diagnostics& diagnostics) {
+void reportInheritCycles(const Document& d, const Definitions& definitions, Findings& findings) {
     const WellKnown& k = d.known();
     std::vector<std::uint32_t> seen(d.size(), 0);  // the number of the walk that met the nodedef
     std::uint32_t walk = 0;
@@ -140,12 +136,11 @@ void reportInheritCycles(const Document& d, const Definitions& definitions, Diag
         walk++;
         if (NodeDef def = definitions.byName(d.qualified(d.namespaceOf(start), d[start].name));
             def && definitions.row(def).flags & NodeDefRow::TooManyPorts) {
-            Diagnostic& out = diagnostics.error(
+            Diagnostic& out = findings.error(
                 "limit",
                 fmt::format("the nodedef has more than {} inputs or outputs, or those of all nodedefs are too many",
-                            NodeDefRow::kMostPorts));
-            out.where = d.locate(start);
-            out.path = d.path(start);
+                            NodeDefRow::kMostPorts),
+                start);
             out.hint = "several nodes may share the work";
         }
         for (ElementId at = start; at && seen[at.index] < walk;) {
@@ -157,10 +152,9 @@ void reportInheritCycles(const Document& d, const Definitions& definitions, Diag
             if (!def || definitions.element(def).document != &d) break;
             ElementId base = definitions.element(def).id;
             if (seen[base.index] == walk) {
-                Diagnostic& out = diagnostics.error(
-                    "inherit-cycle", fmt::format("the nodedef inherits itself by way of '{}'", d.text(inherit)));
-                out.where = d.locate(at, k.inherit);
-                out.path = d.path(at);
+                findings.error("inherit-cycle",
+                               fmt::format("the nodedef inherits itself by way of '{}'", d.text(inherit)), at,
+                               k.inherit);
             }
             at = base;
         }
@@ -169,8 +163,8 @@ void reportInheritCycles(const Document& d, const Definitions& definitions, Diag
 
 }  // namespace
 
-void reportCycles(const Document& d, const Resolved& resolved, Diagnostics& diagnostics) {
-    CycleFinder finder{d, resolved, diagnostics};
+void reportCycles(const Document& d, const Resolved& resolved, Findings& findings) {
+    CycleFinder finder{d, resolved, findings};
     finder.colours.assign(d.size(), Colour::White);
     for (std::uint32_t i = 0; i < d.size(); i++) {
         ElementId target = resolved.targets[i];
@@ -179,14 +173,14 @@ void reportCycles(const Document& d, const Resolved& resolved, Diagnostics& diag
 }
 
 void reportRecursiveDefinitions(const Document& d, const Definitions& definitions, const Resolved& resolved,
-                                Diagnostics& diagnostics) {
-    RecursionFinder finder{d, definitions, resolved, diagnostics};
+                                Findings& findings) {
+    RecursionFinder finder{d, definitions, resolved, findings};
     finder.colours.assign(d.size(), Colour::White);
     for (ElementId e : children(d, d.root()))
         if (d[e].category == d.known().nodegraph && resolved.nodedefs[e.index] &&
             finder.colours[e.index] == Colour::White)
             finder.visit(e);
-    reportInheritCycles(d, definitions, diagnostics);
+    reportInheritCycles(d, definitions, findings);
 }
 
 }  // namespace shaderx::doc

@@ -5,6 +5,7 @@
 
 #include "doc/definitions.h"
 #include "doc/document.h"
+#include "doc/findings.h"
 
 namespace shaderx::doc {
 
@@ -15,10 +16,10 @@ struct Resolved {
 };
 
 // Reports each cycle among nodes once, through nodegraphs too, with its path: "a → b → a".
-void reportCycles(const Document& document, const Resolved& resolved, Diagnostics& diagnostics);
+void reportCycles(const Document& document, const Resolved& resolved, Findings& findings);
 
 // Reports nodegraphs that use, directly or not, the very node that they implement, and nodedefs that inherit in a ring.
 void reportRecursiveDefinitions(const Document& document, const Definitions& definitions, const Resolved& resolved,
-                                Diagnostics& diagnostics);
+                                Findings& findings);
 
 }  // namespace shaderx::doc

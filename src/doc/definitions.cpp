@@ -69,6 +69,7 @@ struct Builder {
     void implementation(ElementId e) {
         Name nodedef = d.attribute(e, k.nodedef), node = d.attribute(e, k.node);
         ImplementationRow row{nodedef, d.attribute(e, k.target), e, ImplementationRow::Graph};
+        if (!row.target) row.target = d.attribute(e, k.language);
         if (d[e].category == k.implementation) {
             row.kind = d.attribute(e, k.nodegraph) ? ImplementationRow::LinkedGraph : ImplementationRow::Source;
             if (!nodedef && node) {
@@ -482,6 +483,33 @@ Implementation Definitions::implementation(NodeDef def, std::span<const Name> ta
         }
     }
     return {};
+}
+
+std::vector<ElementRef> Definitions::implementations(NodeDef def) const {
+    std::vector<ElementRef> out;
+    Revisit revisit;
+    for (NodeDef at = def; at && !revisit.met(at); at = base(at))
+        for (const Layer& layer : layers_)
+            for (const ImplementationRow& r : layer.index.implementations)
+                if (r.key == (r.kind == ImplementationRow::CategoryWide ? row(at).category : row(at).name))
+                    out.push_back({layer.document, r.element});
+    return out;
+}
+
+bool Definitions::hasType(Name name) const {
+    return std::any_of(layers_.begin(), layers_.end(), [&](const Layer& layer) {
+        const Document& d = *layer.document;
+        return static_cast<bool>(d.child(d.root(), d.known().typedefName, name));
+    });
+}
+
+std::vector<std::string_view> Definitions::types() const {
+    std::vector<std::string_view> out;
+    for (const Layer& layer : layers_)
+        for (ElementId e : children(*layer.document, layer.document->root()))
+            if (const Document& d = *layer.document; d[e].category == d.known().typedefName && d[e].name)
+                out.push_back(d.text(d[e].name));
+    return out;
 }
 
 NodeDef Definitions::implementedBy(const Document& d, ElementId graph) const {

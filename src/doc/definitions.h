@@ -46,8 +46,8 @@ struct ImplementationRow {
         CategoryWide,  // <implementation node="add" …>: for every nodedef of that category
     };
 
-    Name key;  // the nodedef's name, or the category
-    Name target;
+    Name key;     // the nodedef's name, or the category
+    Name target;  // or the language that its text is in, where it names no target
     ElementId element;
     std::uint32_t kind = Graph;
 };
@@ -120,7 +120,7 @@ struct Implementation {
     Kind kind = Kind::None;
     ElementRef element;  // the <implementation>, or the <nodegraph nodedef=…> itself
     ElementRef graph;    // of Kind::Graph: the nodegraph
-    Name target;         // the target it serves, none if it is portable
+    Name target;         // the target or language it serves, none if it is portable
     explicit operator bool() const { return kind != Kind::None; }
 };
 
@@ -142,6 +142,9 @@ class Definitions {
     bool hasCategory(Name category, Name space = {}) const;
     // All of a category, in order.
     std::vector<NodeDef> ofCategory(Name category, Name space = {}) const;
+    // Whether a document declares the type by a <typedef>, and all that are declared.
+    bool hasType(Name name) const;
+    std::vector<std::string_view> types() const;
     // All categories, each once.
     std::vector<Name> categories() const;
 
@@ -163,6 +166,8 @@ class Definitions {
     // What implements a nodedef: in each document in turn, one for the first of the targets that has one, else a
     // portable one; those of the nodedef go before category-wide ones; then what the inherited nodedef has.
     Implementation implementation(NodeDef def, std::span<const Name> targets = {}) const;
+    // All that implement it, or its base, whatever they are for.
+    std::vector<ElementRef> implementations(NodeDef def) const;
     // The nodedef that a nodegraph implements (by its own attribute or by an <implementation>), none if it is none's.
     NodeDef implementedBy(const Document& document, ElementId graph) const;
 

@@ -46,7 +46,13 @@ WellKnown::WellKnown(NameTable& names)
       trueValue(names.intern("true")),
       out(names.intern("out")),
       defaultgeomprop(names.intern("defaultgeomprop")),
-      surfaceshader(names.intern("surfaceshader")) {
+      surfaceshader(names.intern("surfaceshader")),
+      empty(names.intern("")),
+      enumName(names.intern("enum")),
+      language(names.intern("language")),
+      filename(names.intern("filename")),
+      string(names.intern("string")),
+      typedefName(names.intern("typedef")) {
     constexpr std::string_view kFormat[] = {
         "input",         "output",      "nodegraph",      "nodedef",        "parameter",      "token",
         "look",          "lookgroup",   "implementation", "collection",     "materialassign", "geominfo",
@@ -152,7 +158,11 @@ void Document::indexName(ElementId id) const {
     if (slotsUsed_ * 2 >= slots_.size()) growIndex(slotsUsed_ + 1);
     const Element& e = elements_[id.index];
     std::size_t mask = slots_.size() - 1, at = hashChild(e.parent, e.name) & mask;
-    while (slots_[at]) at = (at + 1) & mask;
+    while (slots_[at]) {
+        const Element& other = elements_[slots_[at] - 1];
+        hasTwins_ = hasTwins_ || (other.name == e.name && other.parent == e.parent && slots_[at] != id.index + 1);
+        at = (at + 1) & mask;
+    }
     slots_[at] = id.index + 1;
     slotsUsed_++;
 }
@@ -185,6 +195,28 @@ ElementId Document::child(ElementId parent, Name name) const {
         if (e.parent == parent && e.name == name) return ElementId(slots_[at] - 1);
     }
     return {};
+}
+
+bool Document::isUnique(ElementId id) const {
+    const Name name = elements_[id.index].name;
+    const ElementId parent = elements_[id.index].parent;
+    if (!name || !parent) return true;
+    bool indexed = parent.index < indexed_.size() && indexed_[parent.index];
+    if (!indexed) {
+        int left = 16;  // as in child()
+        ElementId c = elements_[parent.index].firstChild;
+        for (; c && left; c = elements_[c.index].next, left--)
+            if (elements_[c.index].name == name && c != id) return false;
+        if (!c) return true;
+        indexChildren(parent);
+    }
+    if (!hasTwins_) return true;
+    std::size_t mask = slots_.size() - 1;
+    for (std::size_t at = hashChild(parent, name) & mask; slots_[at]; at = (at + 1) & mask) {
+        const Element& e = elements_[slots_[at] - 1];
+        if (e.parent == parent && e.name == name && slots_[at] != id.index + 1) return false;
+    }
+    return true;
 }
 
 ElementId Document::child(ElementId parent, std::string_view name) const { return child(parent, names_.find(name)); }

@@ -55,6 +55,7 @@ struct WellKnown {
     Name implementation, version, isdefaultversion, target, inherit, colorspace, fileprefix, namespaceName, file;
     Name function, sourcecode, channels, text, material, look, lookgroup, materialassign, collection, multioutput;
     Name materialx, include, comment, textNode, cdata, pi, doctype, trueValue, out, defaultgeomprop, surfaceshader;
+    Name empty, enumName, language, filename, string, typedefName;
 
   private:
     std::array<Name, 37> format;
@@ -113,6 +114,8 @@ class Document {
     ElementId child(ElementId parent, Name category, Name name) const;
     // A child of `scope` by a name as written in `from`, whose namespace is tried first.
     ElementId childFrom(ElementId from, ElementId scope, Name name) const;
+    // Whether no other child of its parent has the element's name.
+    bool isUnique(ElementId id) const;
     // The element at "graph/node" or "node", none where there is none. An empty path is none.
     ElementId find(std::string_view path) const;
 
@@ -171,6 +174,7 @@ class Document {
     mutable std::vector<std::uint32_t> slots_;  // element + 1, or 0; entries may be stale, so a hit is checked
     mutable std::size_t slotsUsed_ = 0;
     mutable std::vector<bool> indexed_;  // per element: its children are in slots_
+    mutable bool hasTwins_ = false;      // children of one parent in slots_ have one name
     mutable std::vector<std::vector<std::uint32_t>> lineStarts_;
 };
 

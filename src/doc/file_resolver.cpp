@@ -82,8 +82,9 @@ std::optional<ResolvedFile> FileResolver::resolve(std::string_view href, std::st
 }
 
 std::string FileResolver::hint() const {
-    return leftByLink_ ? "a symbolic link leads out of the document's folder and the search paths; --follow-links takes it"
-                       : "";
+    return leftByLink_
+               ? "a symbolic link leads out of the document's folder and the search paths; --follow-links takes it"
+               : "";
 }
 
 }  // namespace shaderx::doc

@@ -148,6 +148,22 @@ struct Reader {
         return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, at - before));
     }
 
+    // Whether an attribute that is left empty, as many programs write all that they know of, is as good as absent.
+    bool saysNothing(Name name) const {
+        const Name all[] = {known.nodename,     known.nodegraph,
+                            known.output,       known.interfacename,
+                            known.colorspace,   known.type,
+                            known.nodedef,      known.node,
+                            known.version,      known.target,
+                            known.inherit,      known.channels,
+                            known.fileprefix,   known.namespaceName,
+                            known.language,     known.defaultgeomprop,
+                            known.sourcecode,   known.function,
+                            known.file,         known.isdefaultversion,
+                            names.find("unit"), names.find("unittype")};
+        return std::find(std::begin(all), std::end(all), name) != std::end(all);
+    }
+
     // Includes within an include's fallback are not followed.
     bool isActiveInclude(ElementId id) const {
         if (!id || document[id].category != known.include) return false;
@@ -261,6 +277,7 @@ void Reader::attributes(pugi::xml_node n, const Frame& f, bool topLevel) {
             continue;
         }
         Name name = names.intern(a.name()), value = names.intern(text);
+        if (text.empty() && saysNothing(name)) continue;
         if (has(name)) {
             error("duplicate-attribute", fmt::format("<{}> has the attribute '{}' twice", n.name(), a.name()), f.source,
                   offsetOf(n));

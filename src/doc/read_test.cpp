@@ -156,7 +156,7 @@ TEST(Read, AChainOfManyNodes) {
         text += "<add name=\"n" + n + "\" type=\"float\"><input name=\"in1\" type=\"float\" nodename=\"n" + before +
                 "\"/><input name=\"in2\" type=\"float\" value=\"0.1\"/></add>\n";
     }
-    text += "</materialx>";
+    text += "<output name=\"o\" type=\"float\" nodename=\"n199999\"/></materialx>";
     NameTable names;
     Document library(names), d(names);
     readInto(library, kTestLibrary);

@@ -1,8 +1,11 @@
 #include "doc/values.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/numbers.h"
 
@@ -85,14 +88,76 @@ std::string numberProblem(std::string_view item, bool integer) {
     return fmt::format("{} is not an integer", quoted(item));
 }
 
-// What is wrong with a text that should be so many numbers; empty where nothing is.
-std::string fixedProblem(bool integer, std::uint32_t count, std::string_view text) {
+// A number as it is written by programs that write their own language's: 0.5f, and whole numbers as 2.0.
+std::optional<float> oddFloat(std::string_view item) {
+    if (!item.ends_with('f') && !item.ends_with('F')) return {};
+    return parseFloat(item.substr(0, item.size() - 1));
+}
+std::optional<int> oddInt(std::string_view item) {
+    std::optional<float> number = parseFloat(item);
+    constexpr float kExact = 1 << 24;
+    if (!number || !(std::abs(*number) < kExact) || *number != std::trunc(*number)) return {};
+    return static_cast<int>(*number);
+}
+
+// What became of a text that is not written as the format has it.
+struct Leniently {
+    std::string odd, wrong;  // at most one of them says something
+
+    void note(std::string text) {
+        if (odd.empty()) odd = std::move(text);
+    }
+};
+
+std::string wholeText(std::uint32_t n) {
+    return n == 1 ? std::string("the first is taken") : fmt::format("the first {} are taken", n);
+}
+
+// Reads so many numbers as bits.
+Leniently readNumbers(bool integer, std::uint32_t count, std::string_view text, std::uint32_t* words) {
+    Leniently out;
     ListReader list{text, 0, false, {}};
-    for (std::string_view item = list.next(); !item.empty(); item = list.next())
-        if (integer ? !parseInt(item) : !parseFloat(item)) return numberProblem(item, integer);
-    if (!list.problem.empty() || list.taken == count) return list.problem;
-    return fmt::format("expected {} number{}, found {}", count, count == 1 ? "" : "s",
-                       list.taken ? fmt::format("{}", list.taken) : "none");
+    for (std::string_view item = list.next(); !item.empty(); item = list.next()) {
+        std::optional<int> whole = integer ? parseInt(item) : std::nullopt;
+        std::optional<float> number = integer ? std::nullopt : parseFloat(item);
+        if (!whole && !number) {
+            if (integer)
+                whole = oddInt(item);
+            else
+                number = oddFloat(item);
+            if (whole) out.note(fmt::format("{} is read as {}", quoted(item), *whole));
+            if (number) out.note(fmt::format("{} is read as {}", quoted(item), formatFloat(*number)));
+        }
+        if (!whole && !number) {
+            out.wrong = numberProblem(item, integer);
+            return out;
+        }
+        if (list.taken > count) continue;
+        words[list.taken - 1] = whole ? static_cast<std::uint32_t>(*whole) : std::bit_cast<std::uint32_t>(*number);
+    }
+    if (!list.problem.empty() && !(list.afterComma && list.taken >= count && list.text.empty())) {
+        out.wrong = std::move(list.problem);
+        return out;
+    }
+    std::string expected = fmt::format("expected {} number{}, found {}", count, count == 1 ? "" : "s",
+                                       list.taken ? fmt::format("{}", list.taken) : "none");
+    if (list.taken < count) out.wrong = std::move(expected);
+    if (list.taken > count) out.note(fmt::format("{}; {}", expected, wholeText(count)));
+    if (!list.problem.empty()) out.note("the last comma is left out");
+    return out;
+}
+
+Leniently readBoolean(std::string_view text, std::uint32_t& word) {
+    Leniently out;
+    std::string lower(text);
+    for (char& c : lower)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    word = lower == "true" || lower == "1";
+    if (!word && lower != "false" && lower != "0")
+        out.wrong = fmt::format("expected true or false, found {}", quoted(text));
+    else if (text != "true" && text != "false")
+        out.note(fmt::format("expected true or false; {} is read as {}", quoted(text), word ? "true" : "false"));
+    return out;
 }
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
@@ -168,18 +233,12 @@ bool parseWords(ValueType type, std::string_view text, std::uint32_t* words) {
     return n && list.next().empty() && list.problem.empty();
 }
 
-std::optional<Value> parseValue(ValueType type, std::string_view text, std::string* problem) {
+std::optional<Value> parseValue(ValueType type, std::string_view text, std::string* problem, std::string* odd) {
     Value value;
     value.type = type;
     std::string wrong;
     switch (type) {
         case ValueType::Boolean:
-            text = trim(text);
-            value.integer = text == "true";
-            value.numbers[0] = static_cast<float>(value.integer);
-            if (text != "true" && text != "false")
-                wrong = fmt::format("expected true or false, found {}", quoted(text));
-            break;
         case ValueType::Integer:
         case ValueType::Float:
         case ValueType::Color3:
@@ -189,10 +248,13 @@ std::optional<Value> parseValue(ValueType type, std::string_view text, std::stri
         case ValueType::Vector4:
         case ValueType::Matrix33:
         case ValueType::Matrix44: {
-            std::uint32_t words[16];
-            wrong = fixedProblem(type == ValueType::Integer, numberCount(type), text);
-            if (!wrong.empty() || !parseWords(type, text, words)) break;
-            if (type == ValueType::Integer) {
+            std::uint32_t words[16] = {};
+            Leniently read = type == ValueType::Boolean
+                                 ? readBoolean(trim(text), words[0])
+                                 : readNumbers(type == ValueType::Integer, numberCount(type), text, words);
+            wrong = std::move(read.wrong);
+            if (odd) *odd = std::move(read.odd);
+            if (type <= ValueType::Integer) {
                 value.integer = static_cast<int>(words[0]);
                 value.numbers[0] = static_cast<float>(value.integer);
             } else {
@@ -221,6 +283,55 @@ std::optional<Value> parseValue(ValueType type, std::string_view text, std::stri
     if (wrong.empty()) return value;
     if (problem) *problem = std::move(wrong);
     return {};
+}
+
+std::vector<std::string_view> choicesOf(std::string_view list) {
+    std::vector<std::string_view> out;
+    if (trim(list).empty()) return out;
+    for (;;) {
+        const std::size_t comma = list.find(',');
+        out.push_back(trim(list.substr(0, comma)));
+        if (comma == std::string_view::npos) return out;
+        list.remove_prefix(comma + 1);
+    }
+}
+
+std::optional<Diagnostic> judgeValue(const Document& d, ElementId port) {
+    const WellKnown& k = d.known();
+    const std::string_view type = d.attributeText(port, k.type), text = d.attributeText(port, k.value);
+    const std::optional<ValueType> known = valueType(type);
+    if (!known || (text.empty() && *known <= ValueType::Matrix44)) return {};
+    std::string problem, odd;
+    const bool isRead = parseValue(*known, text, &problem, &odd).has_value();
+    if (isRead && odd.empty()) return {};
+    Diagnostic out;
+    out.severity = isRead ? Severity::Warning : Severity::Error;
+    out.code = isRead ? "odd-value" : "bad-value";
+    out.message = fmt::format("{} {} value of '{}': {}", isRead ? "odd" : "bad", type, d.text(d[port].name),
+                              isRead ? odd : problem);
+    out.where = d.locate(port, k.value);
+    out.path = d.path(port);
+    return out;
+}
+
+std::optional<Diagnostic> judgeChoice(const Document& d, ElementId port, ElementRef declared) {
+    const WellKnown& k = d.known();
+    const Name given = d.attribute(port, k.value), list = declared.attribute(k.enumName);
+    if (!given || !list || d.text(given).empty()) return {};
+    const std::vector<std::string_view> choices = choicesOf(d.text(list));
+    const std::string_view word = d.text(given);
+    if (choices.empty() || std::find(choices.begin(), choices.end(), word) != choices.end()) return {};
+    Diagnostic out;
+    out.severity = Severity::Warning;
+    out.code = "unknown-choice";
+    out.message = fmt::format("'{}' is no value of '{}'; the default '{}' is taken", word, d.text(d[port].name),
+                              declared.attributeText(k.value));
+    out.where = d.locate(port, k.value);
+    out.path = d.path(port);
+    const std::string_view near = nearest(word, choices);
+    out.hint = near.empty() ? fmt::format("its values are {}", fmt::join(choices, ", "))
+                            : fmt::format("did you mean '{}'?", near);
+    return out;
 }
 
 }  // namespace shaderx::doc

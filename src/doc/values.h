@@ -8,6 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "base/diagnostics.h"
+#include "doc/document.h"
+
 namespace shaderx::doc {
 
 enum class ValueType : std::uint8_t {
@@ -53,8 +56,20 @@ struct Value {
 // text is wrong or the type has no numbers; parseValue tells what is wrong.
 bool parseWords(ValueType type, std::string_view text, std::uint32_t* words);
 
-// Parses a value. Numbers are separated by commas or blanks, as many as the type has. Where the text is wrong, returns
-// none and, if `problem` is given, says there what is wrong: "expected 3 numbers, found 2".
-std::optional<Value> parseValue(ValueType type, std::string_view text, std::string* problem = nullptr);
+// Parses a value. Numbers are separated by commas or blanks, as many as the type has. What others write is read too:
+// more numbers than that, of which the first are taken, a last comma, 0.5f, a whole number as 2.0, and True or 1 for a
+// boolean; then `odd`, if given, says what was made of it. Where the text is wrong, returns none and, if `problem` is
+// given, says there what is wrong: "expected 3 numbers, found 2".
+std::optional<Value> parseValue(ValueType type, std::string_view text, std::string* problem = nullptr,
+                                std::string* odd = nullptr);
+
+// The items of a list with commas between them, as the attribute `enum` has it.
+std::vector<std::string_view> choicesOf(std::string_view list);
+
+// What there is to say of the value that a port is given: the error bad-value, the warning odd-value, or nothing. An
+// empty value of numbers is none.
+std::optional<Diagnostic> judgeValue(const Document& document, ElementId port);
+// The same of a text of which the nodedef's input `declared` lists all that it may be: the warning unknown-choice.
+std::optional<Diagnostic> judgeChoice(const Document& document, ElementId port, ElementRef declared);
 
 }  // namespace shaderx::doc

@@ -29,6 +29,7 @@ class RememberingResolver final : public doc::Resolver {
   public:
     RememberingResolver(doc::Resolver& source, KeptFiles* kept) : source_(source), kept_(kept) {}
     std::optional<doc::ResolvedFile> resolve(std::string_view href, std::string_view fromDirectory) override;
+    std::string hint() const override { return source_.hint(); }
 
   private:
     doc::Resolver& source_;
