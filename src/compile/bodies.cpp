@@ -134,6 +134,15 @@ bool NodeBodies::fromSource(doc::NodeDef def, const doc::Implementation& impleme
     doc::ElementRef element = implementation.element;
     const doc::WellKnown& k = element.document->known();
     auto text = [&](std::string_view attribute) { return element.attributeText(names_.intern(attribute)); };
+    const bool isLibrary = std::any_of(libraries_.begin(), libraries_.end(),
+                                       [&](const Library* l) { return &l->document() == element.document; });
+    const bool isReserved = !text("leaf").empty() || !text("builder").empty();
+    if (isReserved && !(isLibrary && (text("builder").empty() || element.document == &libraries_.back()->document()))) {
+        Diagnostic& e = diagnostics.error("reserved-attribute", "the implementation says what is for libraries only");
+        e.where = element.document->locate(element.id);
+        e.path = element.document->path(element.id);
+        return false;
+    }
     if (std::string_view name = text("leaf"); !name.empty()) return leaf(def, name);
     if (text("builder") == "attribute") return attribute(def);
     if (text("builder") == "colortransform") return colorTransform(def, element, diagnostics);
@@ -237,7 +246,8 @@ bool NodeBodies::leaf(doc::NodeDef def, std::string_view name) {
     if (known && !std::equal(f.params.begin(), f.params.end(), known->params.begin(), known->params.end(), isSame))
         return false;  // whoever evaluates it finds its inputs by their places
     if (!known) made_.leaves.push_back({leafName, f.params});
-    b.addResult(outputs[0].name, b.emit(Op::Leaf, typeNamed(names_.text(outputs[0].type)), inputs, leafName.index));
+    b.addResult(outputs[0].name,
+                b.emit(Op::Leaf, typeNamed(names_.text(outputs[0].type)), inputs, leafName.index));
     made_.put(std::move(f));
     return true;
 }

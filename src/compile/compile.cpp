@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "compile/bodies.h"
+#include "compile/explain.h"
 #include "compile/finished.h"
 #include "compile/reflection.h"
 #include "doc/check.h"
@@ -137,10 +138,10 @@ std::unique_ptr<doc::Document> Compiler::read(std::string_view file, std::string
     return ok ? std::move(document) : nullptr;
 }
 
-bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics) {
+bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics, const doc::CheckOptions& options) {
     if (!state_->accepts(document, diagnostics)) return false;
     return guarded(diagnostics, "check",
-                   [&] { return doc::validate(document, state_->definitions(document), diagnostics); });
+                   [&] { return doc::validate(document, state_->definitions(document), diagnostics, options); });
 }
 
 std::optional<doc::ColorSpace> Compiler::colorSpace(std::string_view name) const {
@@ -198,6 +199,7 @@ struct Compilation {
     std::vector<graph::Authored> authored{};
     std::unordered_set<Name> baked{};  // uniforms that decide topology
     bool traces = false;               // whether expressions say from which node they come
+    Explainer* explainer = nullptr;    // none where the document is our own
     passes::ExpansionLimits limits{};
     Name pixel = names.intern("@pixel"), vertex = names.intern("@vertex");
 
@@ -420,9 +422,11 @@ struct Compilation {
 
     bool makeGraph() {
         Diagnostics own;
+        graph.unknownIsDefault = options.unknownIsDefault;
         bool built = graph::build(document, element, definitions, graph, own);
-        if ((!built || !graph.isExact) && !explain()) return false;
-        for (const Diagnostic& d : own.all()) diagnostics.add(d.severity, d.code, d.message) = d;
+        if (explainer && (!built || explainer->isNeeded(graph)) && !explainer->explain(graph, diagnostics))
+            return false;
+        for (const Diagnostic& d : own.all()) diagnostics.add(d);
         if (!built) return false;
         if (graph.outputs.empty()) return refuse("no-output", "the element has no output to compute");
         if (graph.outputs[0].type == ir::Type::Void && graph.outputs[0].source.kind != graph::Source::Kind::Node)
@@ -433,22 +437,6 @@ struct Compilation {
         graph.outputs.resize(1);
         if (wants(StageName::Graph)) options.dumps->dump(StageName::Graph, graph::print(graph, definitions));
         return true;
-    }
-
-    // What is wrong with the nodes upstream: the check of the document tells it best, and all of it. True if it has
-    // nothing to say.
-    bool explain() {
-        Diagnostics found;
-        doc::validate(document, definitions, found);
-        std::unordered_set<std::string> upstream;
-        for (doc::ElementId node : graph.visited) upstream.insert(document.path(node));
-        std::size_t errors = diagnostics.errorCount();
-        for (const Diagnostic& d : found.all()) {
-            std::string owner = d.path.substr(0, std::min(d.path.size(), d.path.rfind('/')));
-            bool concerns = upstream.count(d.path) || upstream.count(owner);
-            if (concerns && d.severity != Severity::Warning) diagnostics.add(d.severity, d.code, d.message) = d;
-        }
-        return diagnostics.errorCount() == errors;
     }
 
     bool lower() {
@@ -580,6 +568,7 @@ struct Compiler::Batch {
     FinishedFunctions finished{};
     text::FunctionTexts texts{};
     bool isSeveral = false;  // elements: it pays to keep what is finished
+    std::optional<Explainer> explainer{};
 };
 
 template <class Run>
@@ -590,7 +579,7 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
         diagnostics.error("foreign-element", "the document has no such element");
         return false;
     }
-    auto& [definitions, bodies, made, finished, texts, isSeveral] = batch;
+    auto& [definitions, bodies, made, finished, texts, isSeveral, explainer] = batch;
     Diagnostics own;
     bool ok = guarded(own, fmt::format("generating '{}'", document.path(element)), [&] {
         if (!definitions) definitions = state_->definitions(document);
@@ -614,18 +603,33 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
                       isSeveral ? &finished : nullptr,
                       texts,
                       ir::Module(state_->names)};
+        if (!explainer) explainer.emplace(document, *definitions, doc::CheckOptions{options.unknownIsDefault, false});
+        c.explainer = &*explainer;
         Prefiltered prefiltered(state_->names, c.module);
         if (options.environment != EnvironmentLight::Samples) c.module.sources.push_back(&prefiltered);
         c.module.sources.push_back(&*bodies);
         for (Library* l : state_->libraries()) c.module.sources.push_back(l);
         return run(c);
     });
+    std::vector<const Diagnostic*> all;
     for (const Diagnostic& d : own.all()) {
-        Diagnostic& told = diagnostics.add(d.severity, d.code, d.message);
-        told = d;
-        if (!told.where.file.empty() || told.where.line) continue;
-        told.where = document.locate(element);  // passes know no document
-        told.path = document.path(element);
+        // Two stages may have met the same mistake.
+        auto isSame = [&](const Diagnostic* x) {
+            return x->code == d.code && x->message == d.message && x->where.line == d.where.line &&
+                   x->where.column == d.where.column && x->where.file == d.where.file && x->path == d.path;
+        };
+        if (std::any_of(all.begin(), all.end(), isSame)) continue;
+        all.push_back(&d);
+        Diagnostic told = d;
+        if (options.strict && told.severity == Severity::Warning) {
+            told.severity = Severity::Error;
+            ok = false;
+        }
+        if (told.where.file.empty() && !told.where.line) {  // passes know no document
+            told.where = document.locate(element);
+            if (told.path.empty()) told.path = document.path(element);
+        }
+        diagnostics.add(std::move(told));
     }
     return ok;
 }

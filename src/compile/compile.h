@@ -27,6 +27,7 @@
 #include "base/diagnostics.h"
 #include "base/result.h"
 #include "compile/library.h"
+#include "doc/check.h"
 #include "doc/color_spaces.h"
 #include "doc/document.h"
 #include "doc/read.h"
@@ -72,6 +73,8 @@ struct GenerateOptions {
     int bindingBase = -1;       // of blocks and samplers, which the text numbers from here on; below 0 it numbers none
     std::string_view unit = "meter";             // what one unit of distance is in the scene, as a <unitdef> calls it
     std::string_view colorspace = "lin_rec709";  // what shading works in, and the pixel stage gives: any space by name
+    bool strict = false;                         // an element of which there is a warning is refused
+    bool unknownIsDefault = false;  // what reads a node that nothing defines takes its default, with a warning
     DumpSink* dumps = nullptr;
     // Limits; beyond them generating is an error.
     std::uint32_t maxDepth = 128;           // nodes and functions made of others, within each other
@@ -188,7 +191,7 @@ class Compiler {
                                         Diagnostics& diagnostics, const doc::ReadOptions& limits = {},
                                         std::vector<doc::Edit>* edits = nullptr);
     // Reports every mistake of a document.
-    bool validate(const doc::Document& document, Diagnostics& diagnostics);
+    bool validate(const doc::Document& document, Diagnostics& diagnostics, const doc::CheckOptions& options = {});
     // A colour space of the libraries, by name or alias; none where there is none of that name.
     std::optional<doc::ColorSpace> colorSpace(std::string_view name) const;
     // What can be rendered: materials, or the outputs of a document without any.

@@ -449,7 +449,7 @@ constexpr Wrong kWrong[] = {
      "a", "unknown-node ", 4},
     {"Dangling", "<sin name='a' type='float'>\n<input name='in' type='float' nodename='nobody'/></sin>", "a",
      "dangling-nodename ", 3},
-    {"DanglingOutput", "<output name='o' type='float' nodename='nobody'/>", "o", "dangling-connection ", 2},
+    {"DanglingOutput", "<output name='o' type='float' nodename='nobody'/>", "o", "dangling-nodename ", 2},
     {"Cycle",
      "<sin name='a' type='float'><input name='in' type='float' nodename='b'/></sin>\n"
      "<cos name='b' type='float'><input name='in' type='float' nodename='a'/></cos>",
@@ -476,12 +476,12 @@ constexpr Wrong kWrong[] = {
      "<nodegraph name='NG' nodedef='ND'><ring name='r' type='float'/><output name='out' type='float' "
      "nodename='r'/></nodegraph>\n"
      "<ring name='h' type='float'/>",
-     "h", "recursive-node ", 2},
+     "h", "cycle ", 3},
     {"BadValue", "<sin name='a' type='float'>\n<input name='in' type='float' value='much'/></sin>", "a", "bad-value ",
      3},
     {"BadValues",
      "<add name='a' type='float'>\n<input name='in1' type='float' value='much'/>\n<input name='in2' type='float' "
-     "value=''/>\n</add>",
+     "value='more'/>\n</add>",
      "a", "bad-value bad-value ", 3},
 };
 
@@ -525,7 +525,8 @@ TEST(Compile, EveryNodeOfTheLibrary) {
                     types.push_back(library->attribute(port, library->known().type));
             auto d = compiler.newDocument();
             ElementId made = d->append(d->root(), library->attributeText(def, node), "n");
-            if (!types.empty()) d->set(made, "type", types.size() > 1 ? "multioutput" : library->text(types[0]));
+            if (types.empty()) types.push_back(library->known().surfaceshader);  // a version that inherits its output
+            d->set(made, "type", types.size() > 1 ? "multioutput" : library->text(types[0]));
             d->set(made, "nodedef", library->text((*library)[def].name));
             for (Interface interface : {Interface::Live, Interface::Baked, Interface::Complete}) {
                 GenerateOptions how;

@@ -181,7 +181,7 @@ struct Reflector {
             if (!a.element || isSampling(a) || !seen.insert(a.element).second) continue;
             FixedValue& v = shader.regenerate.emplace_back();
             v.path = d.path(a.element);
-            v.type = typeNamed(d.text(a.port->type));
+            v.type = graph::typeOf(from.definitions, d.text(a.port->type));
             std::string_view text = d.attributeText(a.element, d.known().value);
             v.value = graph::wordsOf(v.type, text);
             if (v.value.empty()) v.text = text;

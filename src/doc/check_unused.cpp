@@ -52,7 +52,7 @@ struct UnusedFinder {
         for (ElementId target : resolved.targets)
             if (target) isRead[target.index] = true;
         for (const Finding& f : findings.all)  // what is wrong with it has been said, and may be why nothing reads it
-            if (f.diagnostic.severity == Severity::Error) {
+            if (f.element && f.diagnostic.severity == Severity::Error) {
                 isRead[f.element.index] = true;
                 if (d[f.element].category == k.input) isRead[d[f.element].parent.index] = true;
             }

@@ -4,6 +4,7 @@
 #include <array>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -73,6 +74,7 @@ struct Shape {
     // By input of the kind.
     std::vector<std::uint32_t> from;  // which of `given` it is, or kAbsent
     std::vector<ir::Type> types;
+    bool isPlain = true;  // it has a type, its inputs have types, and no two of them one name
 
     static constexpr std::uint32_t kAbsent = 0xffffffffu;
     bool isOf(const doc::Query& q, const std::vector<doc::GivenInput>& inputs) const {
@@ -135,6 +137,8 @@ struct GraphBuilder {
     void addOutput(ElementId output) {
         ir::Type type = graph::typeOf(definitions, d.attributeText(output, d.known().type));
         Output made{d[output].name, type, {}, output};
+        graph.visited.push_back(output);
+        isInOrder(d[output].name && d.isUnique(output));
         if (resolve(output, made.source)) graph.outputs.push_back(made);
     }
 
@@ -153,6 +157,18 @@ struct GraphBuilder {
         e.where = d.locate(at);
         e.path = d.path(at);
         return e;
+    }
+
+    // Whether what is at hand is written as it ought to be; the check of the document says what is wrong with it.
+    void isInOrder(bool holds) { graph.isExact = graph.isExact && holds; }
+
+    // From a port to the one that it reads.
+    ElementId pass(ElementId port, ElementId target) {
+        const doc::WellKnown& k = d.known();
+        graph.visited.push_back(target);
+        isInOrder(d.isUnique(target) && d.isUnique(d[target].parent));
+        isInOrder(d.attribute(port, k.type) == d.attribute(target, k.type));
+        return target;
     }
 
     // Follows a port to its value or node; builds what is upstream of it.
@@ -179,6 +195,8 @@ struct GraphBuilder {
             if ((step & (step - 1)) == 0) passed = port;
             Connection c = doc::connection(d, port);
             if (c.colorspace) source.colorspace = c.colorspace;
+            if (c.value) isInOrder(c.kind == Connection::Kind::None);
+            if (c.value == d.known().empty && !isText(d.attribute(port, d.known().type))) c.value = {};
             bool isLast = c.kind != Connection::Kind::Output && c.kind != Connection::Kind::Interface;
             if (isLast && longFrom) shortcuts[longFrom] = port;
             switch (c.kind) {
@@ -196,7 +214,7 @@ struct GraphBuilder {
                     output = c.output;
                     return c.target;
                 case Connection::Kind::Output:
-                    port = c.target;
+                    port = pass(port, c.target);
                     break;
                 case Connection::Kind::Interface: {
                     Name name = d.attribute(port, d.known().interfacename);
@@ -210,12 +228,15 @@ struct GraphBuilder {
                               fmt::format("the nodegraph has no input '{}'", d.text(name)));
                         return {};
                     }
-                    port = c.target;
+                    port = pass(port, c.target);
                     break;
                 }
             }
         }
     }
+
+    // Of these the empty text is a value too.
+    bool isText(Name type) const { return type == d.known().string || type == d.known().filename; }
 
     bool isOpen(Name input) const { return graph.interface && definitions.input(graph.interface, input); }
 
@@ -234,13 +255,19 @@ struct GraphBuilder {
     }
 
     bool pickOutput(ElementId port, Name output, Source& source) {
-        if (!output) return true;
         auto outputs = graph.kindOf(graph.nodes[source.node.index]).outputs;
+        const Name type = d.attribute(port, d.known().type);
+        if (!output) {
+            isInOrder(!outputs.empty() && outputs[0].type == type);
+            return true;
+        }
         for (std::size_t i = 0; i < outputs.size(); i++)
             if (outputs[i].name == output) {
+                isInOrder(outputs[i].type == type);
                 source.output = static_cast<std::uint32_t>(i);
                 return true;
             }
+        isInOrder(false);
         if (outputs.size() == 1) return true;
         error(port, "dangling-output", fmt::format("the node has no output '{}'", d.text(output)));
         return false;
@@ -261,6 +288,12 @@ struct GraphBuilder {
     bool push(ElementId element, Name output) {
         graph.visited.push_back(element);
         const Shape& shape = shapeOf(element);
+        isInOrder(shape.isPlain && d[element].name && d.isUnique(element));
+        if (!shape.match && graph.unknownIsDefault &&
+            !definitions.hasCategory(d[element].category, shape.query.space)) {
+            isInOrder(false);
+            return false;
+        }
         if (!shape.match) {
             error(element, "unknown-node",
                   fmt::format("no definition of '{}' fits this node", d.text(d[element].category)));
@@ -309,6 +342,7 @@ struct GraphBuilder {
         for (ElementId c : doc::children(d, element)) {
             if (d[c].category != k.input || !d[c].name) {
                 hasOthers = hasOthers || d[c].name;
+                isInOrder(!d[c].name && d[c].category != k.input);
                 continue;
             }
             given.push_back({d[c].name, d.attribute(c, k.type)});
@@ -330,6 +364,7 @@ struct GraphBuilder {
         doc::Query whole = q;
         whole.inputs = given;
         shape.match = definitions.match(whole);
+        shape.isPlain = q.type && std::all_of(given.begin(), given.end(), [](const auto& g) { return bool(g.type); });
         shape.from.clear();
         shape.types.clear();
         shape.types.reserve(given.size());
@@ -347,7 +382,8 @@ struct GraphBuilder {
             if (at > ports.size())
                 at = ports.size();
             else
-                shape.from[--at] = static_cast<std::uint32_t>(g);
+                shape.isPlain =
+                    std::exchange(shape.from[--at], static_cast<std::uint32_t>(g)) == Shape::kAbsent && shape.isPlain;
         }
     }
 

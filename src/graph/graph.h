@@ -65,9 +65,10 @@ struct Graph {
     std::vector<Node> nodes;
     std::vector<Input> inputs;
     std::vector<Output> outputs;
-    std::vector<doc::ElementId> visited;  // all nodes upstream, those that could not be built too
+    std::vector<doc::ElementId> visited;  // nodes and ports upstream, those that could not be built too
     doc::NodeDef interface;  // of which Interface sources are inputs: that of the implementation that this is, or is in
-    bool isExact = true;     // no node gives an input that its nodedef does not have, or of another type
+    bool isExact = true;     // all upstream is written as it ought to be; else the check of the document knows more
+    bool unknownIsDefault = false;  // to be set before: what reads a node that nothing defines takes its default
     const NodeKind& kindOf(const Node& n) const { return kinds[n.kind]; }
     std::span<const Input> inputsOf(const Node& n) const {
         return {inputs.data() + n.firstInput, kindOf(n).inputs.size()};

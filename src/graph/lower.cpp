@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "doc/color_spaces.h"
+#include "doc/values.h"
 #include "graph/texture_hints.h"
 #include "graph/values.h"
 
@@ -393,6 +394,26 @@ struct Lowerer {
               fmt::format("'{}' has no input '{}'", d.text(definitions.row(implemented).name), d.text(name)));
     }
 
+    // Reads a value; what is odd about it, or wrong, is told.
+    bool readPlainly(doc::ElementId element, Type type, std::string_view text, Words& words) {
+        const bool isRight = readWords(type, text, words);
+        if (isRight && !words.isOdd) return true;
+        std::optional<Diagnostic> found = doc::judgeValue(d, element);
+        if (!found) return isRight;
+        const bool isRead = found->severity == Severity::Warning;
+        ok = ok && isRead;
+        diagnostics.add(std::move(*found));
+        return isRead;
+    }
+
+    // Whether the text is one of those that the nodedef lists.
+    bool isUnknownChoice(doc::ElementId element, const Input& input, const Node& owner) {
+        const doc::ElementRef declared = definitions.element(graph.kindOf(owner).def, *input.port);
+        std::optional<Diagnostic> found = doc::judgeChoice(d, element, declared);
+        if (found) diagnostics.add(std::move(*found));
+        return found.has_value();
+    }
+
     ExprId written(const Source& s, Type type, const Input* input, const Node* owner) {
         const doc::ElementId element = s.element;
         if (type == Type::Texture2D) return texture(s, input, owner);
@@ -410,11 +431,9 @@ struct Lowerer {
                 return {};
             }
         } else if (componentCount(type) == 0) {
-            value = constantOf(b, type, text);
-        } else if ((given && text.empty()) || !readWords(type, text, words)) {
-            std::string problem = "there is none";
-            if (!text.empty()) readWords(type, text, words, &problem);
-            error(element, "bad-value", fmt::format("bad value of type {}: {}", info(type).name, problem));
+            const bool isChoice = type == Type::String && input && isUnknownChoice(element, *input, *owner);
+            value = isChoice ? defaultOf(*input, *owner) : constantOf(b, type, text);
+        } else if (!readPlainly(element, type, text, words)) {
             return {};
         } else {
             if (isLive(type, input, owner)) live = uniform(element, type, words, owner);

@@ -1,6 +1,7 @@
 #include "graph/values.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "base/numbers.h"
 #include "doc/values.h"
@@ -62,8 +63,13 @@ bool readWords(Type type, std::string_view text, Words& words, std::string* prob
     std::optional<doc::ValueType> kind = valueTypeOf(type);
     if (!kind) return false;
     if (doc::parseWords(*kind, text, words.bits.data())) return true;
-    if (problem) (void)doc::parseValue(*kind, text, problem);  // tells what is wrong
-    return false;
+    const std::optional<doc::Value> odd = doc::parseValue(*kind, text, problem);
+    if (!odd) return false;
+    words.isOdd = true;
+    for (std::uint32_t i = 0; i < words.count; i++)
+        words.bits[i] = *kind <= doc::ValueType::Integer ? static_cast<std::uint32_t>(odd->integer)
+                                                         : std::bit_cast<std::uint32_t>(odd->numbers[i]);
+    return true;
 }
 
 std::vector<std::uint32_t> wordsOf(Type type, std::string_view text) {
@@ -76,11 +82,11 @@ Type typeOf(const doc::Definitions& definitions, std::string_view name) {
     const Type builtIn = typeNamed(name);
     if (builtIn != Type::Void || name.empty() || name == "void") return builtIn;
     const std::vector<doc::StructDef>& structs = definitions.structs();
-    if (structs.empty()) return Type::Void;
+    if (structs.empty()) return Type::String;
     const NameTable& names = definitions.documents()[0]->names();
     for (std::size_t i = 0; i < structs.size(); i++)
         if (names.text(structs[i].name) == name) return structType(i);
-    return Type::Void;
+    return Type::String;
 }
 
 std::vector<StructType> structsOf(const doc::Definitions& definitions) {

@@ -17,6 +17,7 @@ namespace shaderx::graph {
 struct Words {
     std::array<std::uint32_t, 16> bits{};
     std::uint32_t count = 0;
+    bool isOdd = false;  // not written as the format has it: see doc::parseValue
     std::span<const std::uint32_t> all() const { return {bits.data(), count}; }
 };
 
@@ -28,7 +29,8 @@ bool readWords(ir::Type type, std::string_view text, Words& words, std::string* 
 // The same as a list, zeros for an empty text; empty where the text is not such a value.
 std::vector<std::uint32_t> wordsOf(ir::Type type, std::string_view text);
 
-// The type of a name: one that is built in, or a structure of the documents; Void where there is neither.
+// The type of a name: one that is built in, or a structure of the documents. What shaders do not have (arrays, names of
+// geometry) goes through a program as a text, with which nothing computes. Void for no name.
 ir::Type typeOf(const doc::Definitions& definitions, std::string_view name);
 
 // The structures of the documents, as a module holds them.

@@ -75,21 +75,21 @@ TEST(Cycles, OfGraphsThroughTheirInterfaces) {
 }
 
 TEST(Cycles, OfDefinitions) {
-    expectRefused(compile(wrapped(nodedef("ND_a", "ua") + graphOf("G", "nodedef=\"ND_a\"", "ua") + kUseA)),
-                  "recursive-node", "a node of itself");
+    expectRefused(compile(wrapped(nodedef("ND_a", "ua") + graphOf("G", "nodedef=\"ND_a\"", "ua") + kUseA)), "cycle",
+                  "a node of itself");
     expectRefused(compile(wrapped(nodedef("ND_a", "ua") + graphOf("G", "nodedef=\"ND_a\"", "ub") +
                                   nodedef("ND_b", "ub") + graphOf("H", "nodedef=\"ND_b\"", "ua") + kUseA)),
-                  "recursive-node", "two nodes");
+                  "cycle", "two nodes");
     expectRefused(
         compile(wrapped(nodedef("ND_a", "ua") + "<implementation name=\"I\" nodedef=\"ND_a\" nodegraph=\"G\"/>" +
                         graphOf("G", "", "ua") + kUseA)),
-        "recursive-node", "by an implementation");
+        "cycle", "by an implementation");
     expectRefused(
         compile(wrapped("<geompropdef name=\"gp\" type=\"float\" geomprop=\"ua\"/><nodedef name=\"ND_a\" node=\"ua\">"
                         "<input name=\"i\" type=\"float\" defaultgeomprop=\"gp\"/><output name=\"out\" type=\"float\"/>"
                         "</nodedef>" +
                         graphOf("G", "nodedef=\"ND_a\"", "ua") + kUseA)),
-        "recursive-node", "by a geometric property");
+        "cycle", "by a geometric property");
 }
 
 TEST(Cycles, OfInheritance) {

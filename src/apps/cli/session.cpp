@@ -105,7 +105,9 @@ std::vector<doc::ElementId> Session::elements(const std::string& file, const doc
     if (options.element.empty()) {
         found = compiler.renderableElements(document);
         if (found.empty())
-            diagnostics.error("nothing-to-render", "the document has no material and no output").where.file = file;
+            doc::reportUnrendered(document, true, diagnostics);
+        else
+            doc::reportUnrendered(document, false, diagnostics);
     } else if (doc::ElementId e = document.find(options.element)) {
         found.push_back(e);
     } else {
@@ -119,6 +121,8 @@ GenerateOptions Session::how() {
     GenerateOptions how;
     interfaceNamed(options.interface, how.interface);
     how.dumps = &dumps;
+    how.strict = options.strict;
+    how.unknownIsDefault = options.unknown == "default";
     how.maxDepth = limits.depth;
     how.maxExpressions = limits.expressions;
     if (options.light != "fis")
