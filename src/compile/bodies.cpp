@@ -246,8 +246,7 @@ bool NodeBodies::leaf(doc::NodeDef def, std::string_view name) {
     if (known && !std::equal(f.params.begin(), f.params.end(), known->params.begin(), known->params.end(), isSame))
         return false;  // whoever evaluates it finds its inputs by their places
     if (!known) made_.leaves.push_back({leafName, f.params});
-    b.addResult(outputs[0].name,
-                b.emit(Op::Leaf, typeNamed(names_.text(outputs[0].type)), inputs, leafName.index));
+    b.addResult(outputs[0].name, b.emit(Op::Leaf, typeNamed(names_.text(outputs[0].type)), inputs, leafName.index));
     made_.put(std::move(f));
     return true;
 }
