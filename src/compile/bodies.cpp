@@ -24,10 +24,7 @@ NodeBodies::NodeBodies(NameTable& names, const doc::Definitions& definitions, st
       maxDepth_(maxDepth),
       made_(names_) {
     made_.structs = graph::structsOf(definitions_);
-    for (Library* l : libraries_) {
-        documents_.push_back(&l->document());
-        made_.sources.push_back(l);
-    }
+    for (Library* l : libraries_) made_.sources.push_back(l);
 }
 
 const LeafInfo* NodeBodies::findLeaf(Name name) {
@@ -364,20 +361,18 @@ bool NodeBodies::colorTransform(doc::NodeDef def, doc::ElementRef element, Diagn
 }
 
 float NodeBodies::unitScale(std::string_view type, std::string_view unit) {
-    Name definition = names_.find("unitdef"), unitType = names_.find("unittype"), scale = names_.find("scale");
-    for (const doc::Document* d : documents_)
-        for (doc::ElementId e : doc::children(*d, d->root())) {
-            if ((*d)[e].category != definition || d->attributeText(e, unitType) != type) continue;
-            if (doc::ElementId found = d->child(e, unit)) return parseFloat(d->attributeText(found, scale)).value_or(0);
-        }
+    const Name unitType = names_.find("unittype"), scale = names_.find("scale");
+    for (const doc::ElementRef& e : definitions_.declared("unitdef")) {
+        if (e.attributeText(unitType) != type) continue;
+        const doc::Document& d = *e.document;
+        if (doc::ElementId found = d.child(e.id, unit)) return parseFloat(d.attributeText(found, scale)).value_or(0);
+    }
     return 0;
 }
 
 doc::ElementRef NodeBodies::geometricProperty(Name name) {
-    for (const doc::Document* d : documents_) {
-        doc::ElementId e = d->child(d->root(), names_.intern("geompropdef"), name);
-        if (e) return {d, e};
-    }
+    for (const doc::ElementRef& e : definitions_.declared("geompropdef"))
+        if (e->name == name) return e;
     return {};
 }
 

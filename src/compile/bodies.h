@@ -44,8 +44,6 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     void keep(ir::Function function) { made_.put(std::move(function)); }
     // Whether the function of a node came with a library that was precompiled.
     bool isPrecompiled(Name function) const { return !made_.findOwn(function); }
-    // A document whose geometric properties, units and colour spaces count, before those of the libraries.
-    void addDocument(const doc::Document& document) { documents_.insert(documents_.begin(), &document); }
 
   private:
     bool fromSource(doc::NodeDef def, const doc::Implementation& implementation, Diagnostics& diagnostics);
@@ -68,8 +66,7 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     std::vector<Library*> libraries_;
     graph::SceneConventions scene_;
     std::uint32_t maxDepth_;
-    std::vector<const doc::Document*> documents_;
-    doc::ColorSpaces spaces_{documents_};
+    doc::ColorSpaces spaces_{definitions_};
     std::unordered_map<std::uint64_t, graph::ColorConversion> conversions_;  // by name of the space and type
     ir::Module made_;
     std::vector<sl::Signature> known_;  // of all libraries, once asked for

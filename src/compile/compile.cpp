@@ -145,9 +145,9 @@ bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics,
 }
 
 std::optional<doc::ColorSpace> Compiler::colorSpace(std::string_view name) const {
-    std::vector<const doc::Document*> documents;
-    for (Library* l : state_->libraries()) documents.push_back(&l->document());
-    doc::ColorSpaces spaces(documents);
+    doc::Definitions all;
+    for (Library* l : state_->libraries()) all.add(l->document(), l->index());
+    doc::ColorSpaces spaces(all);
     const doc::ColorSpace* found = spaces.find(name);
     return found ? std::optional(*found) : std::nullopt;
 }
@@ -589,8 +589,7 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
             made.clear();
         }
         if (!bodies)
-            bodies.emplace(state_->names, *definitions, state_->libraries(), sceneOf(options), options.maxDepth)
-                .addDocument(document);
+            bodies.emplace(state_->names, *definitions, state_->libraries(), sceneOf(options), options.maxDepth);
         bodies->forgetNames();
         Compilation c{document,
                       element,

@@ -24,6 +24,7 @@ enum Section : std::uint32_t {
     DefNames,
     Ports,
     Implementations,
+    Declarations,
     FunctionNames,  // sorted by name: name, first word in Functions
     Functions,
     Signatures,
@@ -168,7 +169,8 @@ class ImageLibrary final : public Library {
     const doc::Document& document() const override { return document_; }
     doc::DefinitionsIndex index() const override {
         return {sections_[NodeDefs].as<doc::NodeDefRow>(), sections_[DefNames].as<doc::NameRow>(),
-                sections_[Ports].as<doc::Port>(), sections_[Implementations].as<doc::ImplementationRow>()};
+                sections_[Ports].as<doc::Port>(), sections_[Implementations].as<doc::ImplementationRow>(),
+                sections_[Declarations].as<doc::ElementId>()};
     }
 
     const std::vector<sl::Signature>& signatures() override {
@@ -261,6 +263,7 @@ std::vector<std::uint8_t> writeImage(const Library& library, std::span<const sl:
     append(sections[DefNames], index.names);
     append(sections[Ports], index.ports);
     append(sections[Implementations], index.implementations);
+    append(sections[Declarations], index.declarations);
     for (const ir::Function* f : functions) {  // sorted by name
         sections[FunctionNames].push_back(f->name.index);
         sections[FunctionNames].push_back(static_cast<std::uint32_t>(sections[Functions].size()));

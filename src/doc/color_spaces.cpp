@@ -98,13 +98,9 @@ std::optional<Point> pointOf(std::string_view text) {
 }  // namespace
 
 ElementRef ColorSpaces::declaration(std::string_view name) const {
-    for (const Document* d : documents_) {
-        const Name category = d->names().find("colorspacedef"), alias = d->names().find("alias");
-        if (!category) continue;
-        for (ElementId e : children(*d, d->root()))
-            if ((*d)[e].category == category &&
-                (lowered(d->text((*d)[e].name)) == name || lists(d->attributeText(e, alias), name)))
-                return {d, e};
+    for (const ElementRef& e : definitions_.declared("colorspacedef")) {
+        const Document& d = *e.document;
+        if (lowered(d.text(e->name)) == name || lists(d.attributeText(e.id, d.names().find("alias")), name)) return e;
     }
     return {};
 }
@@ -151,11 +147,7 @@ const ColorSpace* ColorSpaces::find(std::string_view name) {
 
 std::vector<std::string_view> ColorSpaces::names() const {
     std::vector<std::string_view> all;
-    for (const Document* d : documents_) {
-        const Name category = d->names().find("colorspacedef");
-        for (ElementId e : children(*d, d->root()))
-            if (category && (*d)[e].category == category) all.push_back(d->text((*d)[e].name));
-    }
+    for (const ElementRef& e : definitions_.declared("colorspacedef")) all.push_back(e.document->text(e->name));
     return all;
 }
 
@@ -181,8 +173,7 @@ void warnUnknownColorSpace(const Document& d, ElementId element, std::string_vie
 void reportUnknownColorSpaces(const Document& d, const Definitions& definitions, Diagnostics& diagnostics) {
     constexpr std::string_view kWorking = "lin_rec709";
     const Name word = d.known().colorspace, usual = d.names().find(kWorking);
-    const std::vector<const Document*> documents = definitions.documents();
-    ColorSpaces spaces(documents);
+    ColorSpaces spaces(definitions);
     for (std::uint32_t i = 0; i < d.size(); i++) {
         const ElementId e(i);
         const Name said = d[e].category ? d.attribute(e, word) : Name();

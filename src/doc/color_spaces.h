@@ -29,8 +29,7 @@ struct ColorSpace {
 // Finds spaces by name or alias; case does not matter. Earlier documents go before later ones.
 class ColorSpaces {
   public:
-    // The list may grow afterwards.
-    explicit ColorSpaces(const std::vector<const Document*>& documents) : documents_(documents) {}
+    explicit ColorSpaces(const Definitions& definitions) : definitions_(definitions) {}
 
     // Null where there is no such space, or its declaration says no primaries that span a space.
     const ColorSpace* find(std::string_view name);
@@ -43,7 +42,7 @@ class ColorSpaces {
     ElementRef declaration(std::string_view name) const;
     std::optional<ColorSpace> read(std::string_view name, int depth) const;
 
-    const std::vector<const Document*>& documents_;
+    const Definitions& definitions_;
     std::unordered_map<std::string, std::optional<ColorSpace>> found_;  // by name as asked for
 };
 

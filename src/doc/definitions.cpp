@@ -138,12 +138,17 @@ struct Builder {
     }
 
     void run() {
+        NameTable& names = d.names();
+        const Name declaring[] = {names.intern("geompropdef"), names.intern("unitdef"), names.intern("typedef"),
+                                  names.intern("colorspacedef")};
         for (ElementId e : children(d, d.root())) {
             Name category = d[e].category;
             if (category == k.nodedef)
                 nodedef(e);
             else if (category == k.implementation || category == k.nodegraph)
                 implementation(e);
+            else if (std::find(std::begin(declaring), std::end(declaring), category) != std::end(declaring))
+                t.declarations.push_back(e);
         }
         std::sort(t.nodedefs.begin(), t.nodedefs.end(), [](const NodeDefRow& a, const NodeDefRow& b) {
             return std::tie(a.category, a.element) < std::tie(b.category, b.element);
@@ -238,18 +243,14 @@ const std::vector<StructDef>& Definitions::structs() const {
 void Definitions::collectStructs() const {
     hasStructs_ = true;
     std::vector<StructDef> waiting;
-    for (const Layer& layer : layers_) {
-        const Document& d = *layer.document;
-        const Name typedefWord = d.names().find("typedef"), member = d.names().find("member");
-        if (!typedefWord || !member) continue;
-        for (ElementId e : children(d, d.root())) {
-            if (d[e].category != typedefWord || !d[e].name) continue;
-            StructDef s{d[e].name, {}};
-            for (ElementId c : children(d, e))
-                if (d[c].category == member && d[c].name)
-                    s.members.push_back({d[c].name, d.attribute(c, d.known().type), d.attribute(c, d.known().value)});
-            if (!s.members.empty()) waiting.push_back(std::move(s));
-        }
+    for (const ElementRef& e : declared("typedef")) {
+        const Document& d = *e.document;
+        const Name member = d.names().find("member");
+        StructDef s{e->name, {}};
+        for (ElementId c : children(d, e.id))
+            if (d[c].category == member && d[c].name)
+                s.members.push_back({d[c].name, d.attribute(c, d.known().type), d.attribute(c, d.known().value)});
+        if (s.name && !s.members.empty()) waiting.push_back(std::move(s));
     }
     // Those whose members are known come first, and so on, until none is left that could be known.
     auto isDone = [&](Name name) {
@@ -268,9 +269,13 @@ void Definitions::collectStructs() const {
     }
 }
 
-std::vector<const Document*> Definitions::documents() const {
-    std::vector<const Document*> all;
-    for (const Layer& layer : layers_) all.push_back(layer.document);
+std::vector<ElementRef> Definitions::declared(std::string_view category) const {
+    std::vector<ElementRef> all;
+    for (const Layer& layer : layers_) {
+        const Name word = layer.document->names().find(category);
+        for (ElementId e : layer.index.declarations)
+            if ((*layer.document)[e].category == word) all.push_back({layer.document, e});
+    }
     return all;
 }
 

@@ -64,6 +64,7 @@ struct DefinitionsIndex {
     std::span<const NameRow> names;                      // of the nodedefs, by name
     std::span<const Port> ports;                         // of NodeDefRow::firstPort
     std::span<const ImplementationRow> implementations;  // by key
+    std::span<const ElementId> declarations;             // geometric properties, units, types, colour spaces, in order
 };
 
 struct DefinitionsTables {
@@ -71,7 +72,8 @@ struct DefinitionsTables {
     std::vector<NameRow> names;
     std::vector<Port> ports;
     std::vector<ImplementationRow> implementations;
-    DefinitionsIndex index() const { return {nodedefs, names, ports, implementations}; }
+    std::vector<ElementId> declarations;
+    DefinitionsIndex index() const { return {nodedefs, names, ports, implementations, declarations}; }
 };
 DefinitionsTables buildIndex(const Document& document);
 
@@ -148,6 +150,8 @@ class Definitions {
     // All categories, each once.
     std::vector<Name> categories() const;
 
+    // A name of their table. There must be a document.
+    std::string_view text(Name name) const { return layers_[0].document->text(name); }
     const NodeDefRow& row(NodeDef def) const { return layers_[def.layer].index.nodedefs[def.row]; }
     ElementRef element(NodeDef def) const { return {layers_[def.layer].document, row(def).element}; }
     // The whole interface: inherited ports in the order of the base, each replaced by the def's own of that name, then
@@ -161,8 +165,9 @@ class Definitions {
     // All structures of all documents, each name once, those before it that a member is of; one that holds itself, or
     // something that is no value, is none. Nothing is searched where no document has any.
     const std::vector<StructDef>& structs() const;
-    // The documents in the order of their layers.
-    std::vector<const Document*> documents() const;
+    // What the documents declare beside nodes: their geompropdef, unitdef, typedef or colorspacedef elements, document
+    // by document in the order of the layers.
+    std::vector<ElementRef> declared(std::string_view category) const;
     // What implements a nodedef: in each document in turn, one for the first of the targets that has one, else a
     // portable one; those of the nodedef go before category-wide ones; then what the inherited nodedef has.
     Implementation implementation(NodeDef def, std::span<const Name> targets = {}) const;

@@ -259,13 +259,13 @@ TEST(Lower, AGeometricPropertyTakesNoValue) {
     EXPECT_FALSE(s.diagnostics.hasErrors());
     EXPECT_EQ(s.uniforms(), "f_scale=f/scale ");
 
-    // What is connected is read, also where it ends in a value of a nodegraph.
+    // A value of a nodegraph's port is no place or direction of the mesh either.
     Sample port(R"(<nodegraph name="g"><input name="up" type="vector3" value="0, 0, 1"/>
         <facing name="f" type="float"><input name="normal" type="vector3" interfacename="up"/></facing>
         <output name="out" type="float" nodename="f"/></nodegraph>)");
     text = port.program("g");
-    EXPECT_EQ(count(text, "call vector3 ND_normal"), 0u) << text;
-    EXPECT_EQ(port.codes(), "");
+    EXPECT_EQ(count(text, "call vector3 ND_normal"), 1u) << text;
+    EXPECT_EQ(port.codes(), "ignored-value ");
 }
 
 TEST(Lower, ValuesInAnotherColourSpaceAreTransformed) {

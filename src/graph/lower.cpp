@@ -312,7 +312,7 @@ struct Lowerer {
     // place or direction of a mesh there, such as 0 or a normal in tangent space, and are drawn by others without it.
     bool isGeometric(const Source& s, const Input& input, const Node& owner) {
         Name property = kindOf(input, owner).property;
-        if (!property || d[s.element].parent != owner.element) return false;
+        if (!property) return false;
         ignoredValue(s.element, property);
         return true;
     }

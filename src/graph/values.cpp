@@ -82,10 +82,8 @@ Type typeOf(const doc::Definitions& definitions, std::string_view name) {
     const Type builtIn = typeNamed(name);
     if (builtIn != Type::Void || name.empty() || name == "void") return builtIn;
     const std::vector<doc::StructDef>& structs = definitions.structs();
-    if (structs.empty()) return Type::String;
-    const NameTable& names = definitions.documents()[0]->names();
     for (std::size_t i = 0; i < structs.size(); i++)
-        if (names.text(structs[i].name) == name) return structType(i);
+        if (definitions.text(structs[i].name) == name) return structType(i);
     return Type::String;
 }
 
@@ -94,9 +92,8 @@ std::vector<StructType> structsOf(const doc::Definitions& definitions) {
     for (const doc::StructDef& s : definitions.structs()) {
         StructType& made = all.emplace_back();
         made.name = s.name;
-        const NameTable& names = definitions.documents()[0]->names();
         for (const doc::StructDef::Member& m : s.members)
-            made.members.push_back({m.name, typeOf(definitions, names.text(m.type))});
+            made.members.push_back({m.name, typeOf(definitions, definitions.text(m.type))});
     }
     return all;
 }
