@@ -414,10 +414,11 @@ struct Compilation {
         if (output.type != ir::Type::Material || output.source.kind != graph::Source::Kind::Node) return false;
         bool hasShaders = false;
         for (const graph::Input& input : graph.inputsOf(graph.nodes[output.source.node.index])) {
-            hasShaders = hasShaders || ir::isClosure(input.type);
-            if (ir::isClosure(input.type) && input.source.kind == graph::Source::Kind::Node) return false;
+            if (!ir::isShader(input.type)) continue;
+            hasShaders = true;
+            if (input.source.kind == graph::Source::Kind::Node) return false;
         }
-        return hasShaders;  // else it is a definition's, which makes its own
+        return hasShaders;  // else it makes its own, of closures or values
     }
 
     bool makeGraph() {

@@ -329,8 +329,8 @@ void Checker::dangling(ElementId port, const Connection& c) {
 void Checker::checkInterface(ElementId port, const Connection& c) {
     Name wanted = d.attribute(port, k.interfacename), type = c.target ? typeOf(c.target) : Name();
     if (c.target) isRead[c.target.index] = true;
-    ElementId owner = d[port].parent, graph = d[owner].parent;
-    bool inGraph = graph && is(graph, k.nodegraph) && is(port, k.input);
+    ElementId owner = d[port].parent, graph = is(port, k.output) ? owner : d[owner].parent;
+    bool inGraph = graph && is(graph, k.nodegraph);
     NodeDef def = inGraph ? resolved.nodedefs[graph.index] : NodeDef();
     if (const Port* p = def ? definitions.input(def, wanted) : nullptr; p && !c.target) type = p->type;
     if (!c.target && !type) {

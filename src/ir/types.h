@@ -93,6 +93,7 @@ constexpr Type structType(std::size_t index) {
     return static_cast<Type>(static_cast<std::size_t>(Type::FirstStruct) + index);
 }
 inline bool isClosure(Type t) { return t >= Type::BSDF && t <= Type::Material; }
+inline bool isShader(Type t) { return t >= Type::SurfaceShader && t <= Type::LightShader; }
 inline bool isScalar(Type t) { return componentCount(t) == 1; }
 inline bool isMatrix(Type t) { return t == Type::Matrix33 || t == Type::Matrix44; }
 inline bool isVector(Type t) { return componentCount(t) > 1 && !isMatrix(t); }

@@ -14,6 +14,8 @@ struct Expectation {
     std::vector<float> value;
 };
 
+void PrintTo(const Expectation& e, std::ostream* out) { *out << e.document << " " << e.element << e.options; }
+
 // A folder of shared samples beside the sources; a checkout has none.
 fs::path sharedFolder() { return fs::path(SHADERX_SOURCE_DIR) / ".." / "shared"; }
 

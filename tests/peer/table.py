@@ -23,7 +23,7 @@ TABLE = ROOT / "docs/signatures.csv"
 PAGE = ROOT / "docs/signatures.md"
 VALUE_LIMIT, PICTURE_LIMIT, FURNACE_LIMIT, EDGE_LIMIT = 1e-3, 0.005, 1.001, 0.005
 SLICE = 20  # every how many signatures one is tried in a plain run
-GOOD = ("same", "edges", "formula", "explained")
+GOOD = ("same", "edges", "formula", "explained", "open")
 COLUMNS = ("signature", "family", "cases", "elements", "compared", "max", "odd", "rmse", "furnace", "verdict", "case", "reason")
 
 
@@ -231,14 +231,14 @@ def number(v):
 
 def row_of(signature, trials, explained):
     """The table's row: the worst of a signature's trials."""
-    order = ("same", "formula", "edges", "explained", "no peer", "differs", "fails")
+    order = ("same", "formula", "edges", "explained", "open", "no peer", "differs", "fails")
     worst, worst_trial, why = "same", trials[0], ""
     for trial in trials:
         verdict, reason = trial.verdict(), trial.fault or trial.no_peer
         if verdict not in GOOD:
             known = explained.reason(signature.name, trial.case.name)
             if known is not None:
-                verdict, reason = "explained", known
+                verdict, reason = "open" if known.startswith("open: ") else "explained", known
         if order.index(verdict) > order.index(worst):
             worst, worst_trial, why = verdict, trial, reason
     largest = lambda key: max((getattr(t, key) for t in trials if getattr(t, key) is not None), default=None)
@@ -279,7 +279,7 @@ def write_table(rows, run):
         writer.writerows(rows)
     commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     count = lambda verdict, part=rows: sum(r["verdict"] == verdict for r in part)
-    heads = [v for v in ("same", "formula", "edges", "explained", "no peer", "differs", "fails") if count(v)]
+    heads = [v for v in ("same", "formula", "edges", "explained", "open", "no peer", "differs", "fails") if count(v)]
     page = [f"""# Every signature
 
 Written by `tools/signatures --all`; the whole table is [signatures.csv](signatures.csv). Commit {commit}, {run.compiler.version()},
@@ -292,7 +292,7 @@ element is generated in three interfaces, compiled by glslang, drawn, and compar
 samples for closures, which must not exceed {FURNACE_LIMIT} in a white furnace either (or what MaterialX has there: emission, sums). Where
 MaterialX gives no finite number, as for the arc cosine of 2, nothing is compared. `edges`: the same but for at most {EDGE_LIMIT:.1%} of the pixels, where a
 node jumps. `formula`: MaterialX has no such node or cannot draw it, and ours is compared with its formula, written with other nodes.
-`explained`: differs, and is listed below with the reason.
+`explained`: differs, and is listed below with the reason. `open`: differs, and nobody knows yet who is right.
 
 | family | signatures | {' | '.join(heads)} |
 |---|---|{'---|' * len(heads)}"""]
