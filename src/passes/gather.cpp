@@ -622,6 +622,8 @@ struct Gatherer {
             return false;
         return std::all_of(given.begin(), given.end(), [&](ExprId x) {
             const Expr& e = from[x];
+            // What a gathered call gives is a result of its loop, and that is one operation no more.
+            if (e.op == Op::Result && groupOf[from.operand(x, 0).index] != kNone) return false;
             return ownerOf[x.index] == turn.group && loopOf[x.index] == kNoLoop && groupOf[x.index] == kNone &&
                    e.op == first.op && e.type == first.type && e.payload == first.payload &&
                    e.operandCount == first.operandCount && takeSameTypes(x, given[0]);
