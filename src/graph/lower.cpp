@@ -502,6 +502,11 @@ struct Lowerer {
     }
 
     Name newTexture(const Source& s, const Input* input, const Node* reader) {
+        if (d.attributeText(s.element, d.known().value).find('\\') != std::string_view::npos) {
+            Diagnostic& w = diagnostics.warning("odd-value", "the file is written with '\\', which is read as '/'");
+            w.where = d.locate(s.element, d.known().value);
+            w.path = d.path(s.element);
+        }
         Uniform& u = addUniform(s.element, Type::Texture2D);
         u.file = fileOf({&d, s.element}, withTokens(s.element, d.attributeText(s.element, d.known().value)));
         u.colorspace = d.text(spaceOf(s).name);
@@ -542,7 +547,9 @@ struct Lowerer {
     // A file as it is to be found from the document: with the prefix of where it is written.
     std::string fileOf(doc::ElementRef element, std::string_view file) const {
         if (file.empty()) return {};
-        return std::string(d.text(element.document->inherited(element.id, fileprefix))).append(file);
+        std::string path = std::string(d.text(element.document->inherited(element.id, fileprefix))).append(file);
+        std::replace(path.begin(), path.end(), '\\', '/');  // as Windows writes it
+        return path;
     }
 
     // A file name whose [tokens] are replaced by what they stand for: in the element's own node or a graph around it,
