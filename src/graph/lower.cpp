@@ -507,6 +507,7 @@ struct Lowerer {
             w.where = d.locate(s.element, d.known().value);
             w.path = d.path(s.element);
         }
+        warnOfTiles(s.element);
         Uniform& u = addUniform(s.element, Type::Texture2D);
         u.file = fileOf({&d, s.element}, withTokens(s.element, d.attributeText(s.element, d.known().value)));
         u.colorspace = d.text(spaceOf(s).name);
@@ -542,6 +543,20 @@ struct Lowerer {
                        : definitions.element(graph.kindOf(n).def, *i.port).attributeText(d.known().value);
         }
         return {};
+    }
+
+    // Sets of files, one for each tile of texture space, are one sampler here.
+    void warnOfTiles(doc::ElementId element) {
+        for (std::string_view token : {"<UDIM>", "<UVTILE>"}) {
+            if (d.attributeText(element, d.known().value).find(token) == std::string_view::npos) continue;
+            Diagnostic& w = diagnostics.warning(
+                "tiled-texture",
+                fmt::format(
+                    "{} stands for a file of each tile: tiles are not drawn yet, the host has to supply one picture",
+                    token));
+            w.where = d.locate(element, d.known().value);
+            w.path = d.path(element);
+        }
     }
 
     // A file as it is to be found from the document: with the prefix of where it is written.

@@ -16,6 +16,8 @@ static std::string resolved(const Options& options, const std::string& document,
     namespace fs = std::filesystem;
     std::error_code ignored;
     if (file.empty() || fs::path(file).is_absolute()) return file;
+    // A set of tiles is no file, which has been said: the default colour is drawn.
+    if (file.find("<UDIM>") != std::string::npos || file.find("<UVTILE>") != std::string::npos) return {};
     fs::path beside = fs::path(document).parent_path() / file;
     if (fs::exists(beside, ignored)) return beside.string();
     for (const std::string& path : options.paths)
