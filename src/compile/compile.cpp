@@ -421,6 +421,26 @@ struct Compilation {
         return hasShaders;  // else it makes its own, of closures or values
     }
 
+    // What a material reads and a raster's pixel does not show.
+    void warnOfLost() {
+        const graph::Output& output = graph.outputs[0];
+        if (output.type != ir::Type::Material || output.source.kind != graph::Source::Kind::Node) return;
+        const graph::Node& material = graph.nodes[output.source.node.index];
+        const Name back = names.find("backsurfaceshader");
+        for (const graph::Input& input : graph.inputsOf(material)) {
+            if (input.source.kind != graph::Source::Kind::Node) continue;
+            std::string_view what;
+            if (input.type == ir::Type::DisplacementShader) what = "the displacement";
+            if (input.type == ir::Type::VolumeShader) what = "the volume";
+            if (input.port->name == back) what = "the surface of the back";
+            if (what.empty()) continue;
+            Diagnostic& w = diagnostics.warning("ignored-shader", fmt::format("{} is not drawn yet", what));
+            const doc::ElementId port = document.child(material.element, input.port->name);
+            w.where = document.locate(port ? port : material.element);
+            w.path = document.path(port ? port : material.element);
+        }
+    }
+
     bool makeGraph() {
         Diagnostics own;
         graph.unknownIsDefault = options.unknownIsDefault;
@@ -435,6 +455,7 @@ struct Compilation {
         if (ir::isStruct(graph.outputs[0].type))
             return refuse("no-output", "a structure cannot be shown: only its members can");
         if (isEmptyMaterial()) return refuse("no-shader", "the material has no shader");
+        warnOfLost();
         graph.outputs.resize(1);
         if (wants(StageName::Graph)) options.dumps->dump(StageName::Graph, graph::print(graph, definitions));
         return true;
