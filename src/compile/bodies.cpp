@@ -16,13 +16,8 @@ namespace shaderx {
 using namespace ir;
 
 NodeBodies::NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries,
-                       const graph::SceneConventions& scene, std::uint32_t maxDepth)
-    : names_(names),
-      definitions_(definitions),
-      libraries_(std::move(libraries)),
-      scene_(scene),
-      maxDepth_(maxDepth),
-      made_(names_) {
+                       const BodyOptions& options)
+    : names_(names), definitions_(definitions), libraries_(std::move(libraries)), options_(options), made_(names_) {
     made_.structs = graph::structsOf(definitions_);
     for (Library* l : libraries_) made_.sources.push_back(l);
 }
@@ -63,7 +58,7 @@ Name NodeBodies::functionOf(doc::NodeDef def, Diagnostics& diagnostics) {
 // Makes a function of a nodedef unless that is under way already or too deep within others.
 bool NodeBodies::guarded(doc::NodeDef def, Diagnostics& diagnostics, const std::function<bool()>& make) {
     const Name name = definitions_.row(def).name;
-    const bool isTooDeep = underWay_.size() >= maxDepth_;
+    const bool isTooDeep = underWay_.size() >= options_.maxDepth;
     if (!isTooDeep && underWay_.insert(name).second) {
         const bool ok = make();
         underWay_.erase(name);
@@ -73,7 +68,7 @@ bool NodeBodies::guarded(doc::NodeDef def, Diagnostics& diagnostics, const std::
     Diagnostic& e =
         isTooDeep
             ? diagnostics.error("limit", fmt::format("'{}' is used within more than {} nodes that are made of others",
-                                                     names_.text(name), maxDepth_))
+                                                     names_.text(name), options_.maxDepth))
             : diagnostics.error("recursive-node",
                                 fmt::format("the implementation of '{}' uses the node itself", names_.text(name)));
     e.where = element.document->locate(element.id);
@@ -84,10 +79,11 @@ bool NodeBodies::guarded(doc::NodeDef def, Diagnostics& diagnostics, const std::
 bool NodeBodies::fromGraph(doc::NodeDef def, const doc::Implementation& implementation, Name name,
                            const graph::Instance& instance, Diagnostics& diagnostics) {
     graph::Graph g;
+    g.unknownIsDefault = options_.unknownIsDefault;
     const doc::Document& d = *implementation.graph.document;
     if (!graph::build(d, implementation.graph.id, definitions_, g, diagnostics)) return false;
     graph::LowerOptions how;
-    how.scene = scene_;
+    how.scene = options_.scene;
     how.instance = instance;
     return graph::lower(g, definitions_, *this, def, name, how, made_, diagnostics);
 }
@@ -327,10 +323,10 @@ graph::ColorConversion NodeBodies::toWorkingSpace(Name from, Type type, Diagnost
     graph::ColorConversion made;
     const std::string_view space = names_.text(from);
     // Nodes of a library go before what is computed: X_to_Y.
-    if (doc::NodeDef def = nodeFor(fmt::format("{}_to_{}", space, scene_.colorspace), type)) {
+    if (doc::NodeDef def = nodeFor(fmt::format("{}_to_{}", space, options_.scene.colorspace), type)) {
         made.function = functionOf(def, diagnostics);
     } else {
-        const doc::ColorSpace *source = spaces_.find(space), *target = spaces_.find(scene_.colorspace);
+        const doc::ColorSpace *source = spaces_.find(space), *target = spaces_.find(options_.scene.colorspace);
         made.isKnown = source && target;
         if (made.isKnown) made.function = conversion(*source, *target, type, diagnostics);
     }

@@ -14,14 +14,19 @@
 
 namespace shaderx {
 
+struct BodyOptions {
+    graph::SceneConventions scene;  // whose texts must outlive what is made
+    std::uint32_t maxDepth = 128;   // graphs that implement nodes in graphs that implement nodes
+    bool unknownIsDefault = false;  // what reads a node that nothing defines takes its default
+};
+
 // Makes the function of a nodedef, named as the nodedef, by the cheapest of its implementations: an inline expression,
 // a graph of nodes, a portable function, a closure leaf, or a builder of ours. Functions of precompiled libraries are
 // there already. What is made is kept for the next asking.
 class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
   public:
-    // `maxDepth`: graphs that implement nodes in graphs that implement nodes. The texts of `scene` must outlive this.
     NodeBodies(NameTable& names, const doc::Definitions& definitions, std::vector<Library*> libraries,
-               const graph::SceneConventions& scene = {}, std::uint32_t maxDepth = 128);
+               const BodyOptions& options = {});
 
     Name functionOf(doc::NodeDef def, Diagnostics& diagnostics) override;
     bool takeName(Name name) override { return uniformNames_.insert(name).second; }
@@ -64,8 +69,7 @@ class NodeBodies final : public graph::Bodies, public ir::FunctionSource {
     NameTable& names_;
     const doc::Definitions& definitions_;
     std::vector<Library*> libraries_;
-    graph::SceneConventions scene_;
-    std::uint32_t maxDepth_;
+    BodyOptions options_;
     doc::ColorSpaces spaces_{definitions_};
     std::unordered_map<std::uint64_t, graph::ColorConversion> conversions_;  // by name of the space and type
     ir::Module made_;

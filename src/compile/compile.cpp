@@ -138,12 +138,6 @@ std::unique_ptr<doc::Document> Compiler::read(std::string_view file, std::string
     return ok ? std::move(document) : nullptr;
 }
 
-bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics, const doc::CheckOptions& options) {
-    if (!state_->accepts(document, diagnostics)) return false;
-    return guarded(diagnostics, "check",
-                   [&] { return doc::validate(document, state_->definitions(document), diagnostics, options); });
-}
-
 std::optional<doc::ColorSpace> Compiler::colorSpace(std::string_view name) const {
     doc::Definitions all;
     for (Library* l : state_->libraries()) all.add(l->document(), l->index());
@@ -181,6 +175,10 @@ graph::SceneConventions sceneOf(const GenerateOptions& options) {
     return scene;
 }
 
+BodyOptions bodyOptions(const GenerateOptions& options) {
+    return {sceneOf(options), options.maxDepth, options.unknownIsDefault};
+}
+
 // One element on its way to a shader. The stages in the order in which they run.
 struct Compilation {
     const doc::Document& document;
@@ -216,6 +214,21 @@ struct Compilation {
         finish();
         print(shader);
         return true;
+    }
+
+    // Whatever is wrong with an element shows by then, whichever shader is wanted.
+    bool check() {
+        if (!makeGraph() || !lower() || !passes::specialise(module, pixel, {}, made, diagnostics, limits)) return false;
+        return !needsShading() || (specialise() && shade());
+    }
+
+    // Whether shading may have something to say: of volumes, and of closures that a user's library brings.
+    bool needsShading() {
+        const auto isOdd = [&](const ir::Expr& e) {
+            return e.op == ir::Op::Leaf && (e.type == ir::Type::VDF || bodies.findLeaf(Name(e.payload)));
+        };
+        const std::vector<ir::Expr>& all = module.findOwn(pixel)->exprs;
+        return std::any_of(all.begin(), all.end(), isOdd);
     }
 
     // With all values of the document as uniforms, nothing is removed yet.
@@ -593,6 +606,12 @@ struct Compiler::Batch {
     std::optional<Explainer> explainer{};
 };
 
+// Two stages may have met the same mistake.
+static bool isSame(const Diagnostic& a, const Diagnostic& b) {
+    return a.code == b.code && a.message == b.message && a.where.line == b.where.line &&
+           a.where.column == b.where.column && a.where.file == b.where.file && a.path == b.path;
+}
+
 template <class Run>
 bool Compiler::compile(Batch& batch, const doc::Document& document, doc::ElementId element,
                        const GenerateOptions& options, Diagnostics& diagnostics, Run&& run) {
@@ -610,8 +629,7 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
             bodies.reset();
             made.clear();
         }
-        if (!bodies)
-            bodies.emplace(state_->names, *definitions, state_->libraries(), sceneOf(options), options.maxDepth);
+        if (!bodies) bodies.emplace(state_->names, *definitions, state_->libraries(), bodyOptions(options));
         bodies->forgetNames();
         Compilation c{document,
                       element,
@@ -634,12 +652,7 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
     });
     std::vector<const Diagnostic*> all;
     for (const Diagnostic& d : own.all()) {
-        // Two stages may have met the same mistake.
-        auto isSame = [&](const Diagnostic* x) {
-            return x->code == d.code && x->message == d.message && x->where.line == d.where.line &&
-                   x->where.column == d.where.column && x->where.file == d.where.file && x->path == d.path;
-        };
-        if (std::any_of(all.begin(), all.end(), isSame)) continue;
+        if (std::any_of(all.begin(), all.end(), [&](const Diagnostic* x) { return isSame(*x, d); })) continue;
         all.push_back(&d);
         Diagnostic told = d;
         if (options.strict && told.severity == Severity::Warning) {
@@ -653,6 +666,53 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
         diagnostics.add(std::move(told));
     }
     return ok;
+}
+
+// Makes the functions of the nodes that a document defines, whether or not anything uses them.
+bool Compiler::checkDefinitions(Batch& batch, const doc::Document& document, const GenerateOptions& options,
+                                Diagnostics& diagnostics) {
+    return guarded(diagnostics, "check", [&] {
+        const doc::Definitions& definitions = *batch.definitions;
+        NodeBodies bodies(state_->names, definitions, state_->libraries(), bodyOptions(options));
+        const std::size_t errors = diagnostics.errorCount();
+        for (doc::ElementId e : doc::children(document, document.root())) {
+            if (document[e].category != document.known().nodedef) continue;
+            const doc::NodeDef def = definitions.byName(document[e].name, document.namespaceOf(e));
+            if (def && definitions.element(def).document == &document && definitions.implementation(def))
+                bodies.functionOf(def, diagnostics);
+        }
+        return diagnostics.errorCount() == errors;
+    });
+}
+
+bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics, const GenerateOptions& options) {
+    if (!state_->accepts(document, diagnostics)) return false;
+    Diagnostics found;
+    Batch batch;
+    bool ok = guarded(found, "check", [&] {
+        batch.definitions = state_->definitions(document);
+        return doc::validate(document, *batch.definitions, found, {options.unknownIsDefault, false});
+    });
+    // What is told once compiling begins: nodes without a body, sources with mistakes, materials without a shader.
+    const auto addNew = [&](const Diagnostics& later) {
+        for (const Diagnostic& d : later.all())
+            if (std::none_of(found.all().begin(), found.all().end(), [&](const auto& x) { return isSame(x, d); }))
+                found.add(d);
+    };
+    const std::vector<doc::ElementId> elements = doc::renderableElements(document);
+    if (!elements.empty()) doc::reportUnrendered(document, false, found);
+    for (doc::ElementId element : elements) {
+        Diagnostics own;
+        ok = compile(batch, document, element, options, own, [](Compilation& c) { return c.check(); }) && ok;
+        addNew(own);
+    }
+    if (ok) {
+        Diagnostics own;
+        ok = checkDefinitions(batch, document, options, own);
+        addNew(own);
+    }
+    for (const Diagnostic& d : found.all()) diagnostics.add(d);
+    return ok && !(options.strict && !found.all().empty());
 }
 
 void Compiler::generate(const doc::Document& document, std::span<const doc::ElementId> elements,

@@ -190,8 +190,9 @@ class Compiler {
     std::unique_ptr<doc::Document> read(std::string_view file, std::string text, doc::Resolver& resolver,
                                         Diagnostics& diagnostics, const doc::ReadOptions& limits = {},
                                         std::vector<doc::Edit>* edits = nullptr);
-    // Reports every mistake of a document.
-    bool validate(const doc::Document& document, Diagnostics& diagnostics, const doc::CheckOptions& options = {});
+    // Reports every mistake of a document: what the check of the document finds, and what compiling all that it renders
+    // and defines would say.
+    bool validate(const doc::Document& document, Diagnostics& diagnostics, const GenerateOptions& options = {});
     // A colour space of the libraries, by name or alias; none where there is none of that name.
     std::optional<doc::ColorSpace> colorSpace(std::string_view name) const;
     // What can be rendered: materials, or the outputs of a document without any.
@@ -216,6 +217,8 @@ class Compiler {
 
   private:
     struct Batch;
+    bool checkDefinitions(Batch& batch, const doc::Document& document, const GenerateOptions& options,
+                          Diagnostics& diagnostics);
     template <class Run>
     bool compile(Batch& batch, const doc::Document& document, doc::ElementId element, const GenerateOptions& options,
                  Diagnostics& diagnostics, Run&& run);

@@ -14,7 +14,7 @@ int validate(const Options& options) {
         std::unique_ptr<doc::Document> document = s.read(file);
         if (!document) continue;
         Diagnostics diagnostics;
-        s.compiler.validate(*document, diagnostics, {options.unknown == "default", false});
+        s.compiler.validate(*document, diagnostics, s.how());
         s.report(diagnostics, "validate " + file);
     }
     return s.exitCode();

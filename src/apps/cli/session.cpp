@@ -27,7 +27,18 @@ static void tell(const Diagnostic& d) {
     std::fputs(text.c_str(), stderr);
 }
 
-bool Session::report(const Diagnostics& diagnostics, const std::string& replay) {
+// With --strict, every warning is an error.
+static Diagnostics strictly(const Diagnostics& diagnostics) {
+    Diagnostics strict;
+    for (Diagnostic d : diagnostics.all()) {
+        if (d.severity == Severity::Warning) d.severity = Severity::Error;
+        strict.add(std::move(d));
+    }
+    return strict;
+}
+
+bool Session::report(const Diagnostics& found, const std::string& replay) {
+    const Diagnostics& diagnostics = options.strict ? strictly(found) : found;
     if (later && !diagnostics.all().empty()) later->sayings.push_back({{}, diagnostics, replay});
     if (later) return !diagnostics.hasErrors();
     for (const Diagnostic& d : diagnostics.all()) tell(d);
@@ -87,8 +98,7 @@ std::unique_ptr<doc::Document> Session::read(const std::string& file, KeptFiles*
         if (kept) kept->text = text;
         document = compiler.read(file, std::move(text), resolver, diagnostics, limits.read);
     }
-    report(diagnostics, "validate " + file);
-    return document;
+    return report(diagnostics, "validate " + file) ? std::move(document) : nullptr;
 }
 
 std::unique_ptr<doc::Document> Session::readAgain(const std::string& file, const KeptFiles& kept) {
@@ -113,8 +123,7 @@ std::vector<doc::ElementId> Session::elements(const std::string& file, const doc
     } else {
         diagnostics.error("unknown-element", "there is no element '" + options.element + "'").where.file = file;
     }
-    report(diagnostics);
-    return found;
+    return report(diagnostics) ? found : std::vector<doc::ElementId>();
 }
 
 GenerateOptions Session::how() {
