@@ -75,10 +75,9 @@ static std::string prefix(const Location& where) {
 }
 
 std::string format(const Diagnostic& d) {
-    const char* kind = d.severity == Severity::Warning ? "warning: "
-                       : d.severity == Severity::Error ? "error: "
-                                                       : "internal error: ";
-    std::string out = prefix(d.where) + kind + visible(d.message) + " [" + d.code + "]\n";
+    static constexpr std::string_view kKinds[] = {"note: ", "warning: ", "error: ", "internal error: "};
+    std::string out = prefix(d.where).append(kKinds[static_cast<std::size_t>(d.severity)]) + visible(d.message) + " [" +
+                      d.code + "]\n";
     if (!d.path.empty()) out += "  at: " + visible(d.path) + "\n";
     for (const Note& n : d.notes) out += "  note: " + prefix(n.where) + visibleNote(n.message) + "\n";
     if (!d.hint.empty()) out += "  hint: " + visible(d.hint) + "\n";
@@ -86,7 +85,7 @@ std::string format(const Diagnostic& d) {
 }
 
 Diagnostic& Diagnostics::add(Diagnostic diagnostic) {
-    if (diagnostic.severity != Severity::Warning) errors_++;
+    if (diagnostic.severity >= Severity::Error) errors_++;
     if (diagnostic.severity == Severity::Internal) internals_++;
     return all_.emplace_back(std::move(diagnostic));
 }

@@ -1,4 +1,5 @@
 // What went wrong, where, and what to do about it. A user's mistake is a diagnostic, never an exception or an exit.
+// A note is no mistake: it is worth knowing.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace shaderx {
 
-enum class Severity : std::uint8_t { Warning, Error, Internal };
+enum class Severity : std::uint8_t { Note, Warning, Error, Internal };
 
 // A place in a source text; line and column count from 1, columns in bytes; line 0 means the place is not known.
 struct Location {
@@ -54,6 +55,9 @@ class Diagnostics {
     }
     Diagnostic& warning(std::string_view code, std::string message) {
         return add(Severity::Warning, code, std::move(message));
+    }
+    Diagnostic& note(std::string_view code, std::string message) {
+        return add(Severity::Note, code, std::move(message));
     }
     const std::vector<Diagnostic>& all() const { return all_; }
     // Errors so far, internal ones included: compare before and after a step to learn whether it failed.

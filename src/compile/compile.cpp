@@ -179,6 +179,50 @@ BodyOptions bodyOptions(const GenerateOptions& options) {
     return {sceneOf(options), options.maxDepth, options.unknownIsDefault};
 }
 
+// Which values of a document have an effect on anything that it renders.
+class ValueEffects {
+  public:
+    void note(doc::ElementId input, bool hasEffect) { found_.push_back({input, hasEffect}); }
+    // One note for each node with values that have none.
+    void report(const doc::Document& document, Diagnostics& diagnostics) {
+        std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) {
+            return a.input < b.input || (a.input == b.input && a.hasEffect > b.hasEffect);
+        });
+        std::vector<doc::ElementId> idle;  // of one node
+        for (std::size_t i = 0; i < found_.size(); i++) {
+            if (i > 0 && found_[i].input == found_[i - 1].input) continue;
+            if (found_[i].hasEffect) continue;
+            if (!idle.empty() && document[idle[0]].parent != document[found_[i].input].parent)
+                say(document, idle, diagnostics);
+            idle.push_back(found_[i].input);
+        }
+        if (!idle.empty()) say(document, idle, diagnostics);
+    }
+
+  private:
+    struct Found {
+        doc::ElementId input;
+        bool hasEffect;
+    };
+
+    static void say(const doc::Document& document, std::vector<doc::ElementId>& idle, Diagnostics& diagnostics) {
+        constexpr std::size_t kNamed = 4;
+        std::string names;
+        for (std::size_t i = 0; i < std::min(kNamed, idle.size()); i++)
+            names += fmt::format("{}'{}'", i ? ", " : "", document.text(document[idle[i]].name));
+        if (idle.size() > kNamed) names += fmt::format(" and {} more", idle.size() - kNamed);
+        const bool isOne = idle.size() == 1;
+        Diagnostic& n = diagnostics.note("idle-value", fmt::format("the value{} of {} {} no effect", isOne ? "" : "s",
+                                                                   names, isOne ? "has" : "have"));
+        const doc::ElementId at = isOne ? idle[0] : document[idle[0]].parent;
+        n.where = document.locate(at);
+        n.path = document.path(at);
+        idle.clear();
+    }
+
+    std::vector<Found> found_;
+};
+
 // One element on its way to a shader. The stages in the order in which they run.
 struct Compilation {
     const doc::Document& document;
@@ -216,10 +260,24 @@ struct Compilation {
         return true;
     }
 
-    // Whatever is wrong with an element shows by then, whichever shader is wanted.
-    bool check() {
-        if (!makeGraph() || !lower() || !passes::specialise(module, pixel, {}, made, diagnostics, limits)) return false;
-        return !needsShading() || (specialise() && shade());
+    // Whatever is wrong with an element shows by then, whichever shader is wanted; and which values have an effect.
+    bool check(ValueEffects& effects) {
+        if (!makeGraph() || !lower() || !fold()) return false;
+        noteEffects(effects);
+        if (!needsShading()) return true;
+        passes::prune(module, std::array{pixel});
+        return shade();
+    }
+
+    void noteEffects(ValueEffects& effects) const {
+        std::unordered_set<Name> read;
+        const ir::Function& entry = *module.findOwn(pixel);
+        const std::vector<bool> needed = ir::reachable(entry);
+        for (std::size_t i = 0; i < needed.size(); i++)
+            if (needed[i] && entry.exprs[i].op == ir::Op::Uniform) read.insert(Name(entry.exprs[i].payload));
+        for (const graph::Authored& a : authored)
+            if (a.element && !isForHost(names.text(a.port->name)))
+                effects.note(a.element, !a.uniform || baked.count(a.uniform) || read.count(a.uniform));
     }
 
     // Whether shading may have something to say: of volumes, and of closures that a user's library brings.
@@ -506,7 +564,8 @@ struct Compilation {
         return true;
     }
 
-    bool specialise() {
+    // With the values that are known, but for live ones that decide nothing.
+    bool fold() {
         bool ok = passes::specialise(module, pixel, {}, made, diagnostics, limits);
         if (ok && options.interface != Interface::Baked) {
             const ir::Function& entry = *module.findOwn(pixel);
@@ -514,7 +573,11 @@ struct Compilation {
             baked = live ? passes::topologyUniforms(module, entry) : passes::attributeUniforms(module, entry);
             ok = baked.empty() || passes::specialise(module, pixel, baked, made, diagnostics, limits);
         }
-        if (!ok) return false;
+        return ok;
+    }
+
+    bool specialise() {
+        if (!fold()) return false;
         passes::prune(module, std::array{pixel});
         dump(StageName::Specialise);
         return true;
@@ -701,18 +764,23 @@ bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics,
     };
     const std::vector<doc::ElementId> elements = doc::renderableElements(document);
     if (!elements.empty()) doc::reportUnrendered(document, false, found);
+    ValueEffects effects;
+    GenerateOptions how = options;
+    how.interface = Interface::Live;  // which knows the values from what follows of them
     for (doc::ElementId element : elements) {
         Diagnostics own;
-        ok = compile(batch, document, element, options, own, [](Compilation& c) { return c.check(); }) && ok;
+        ok = compile(batch, document, element, how, own, [&](Compilation& c) { return c.check(effects); }) && ok;
         addNew(own);
     }
     if (ok) {
         Diagnostics own;
         ok = checkDefinitions(batch, document, options, own);
         addNew(own);
+        effects.report(document, found);
     }
     for (const Diagnostic& d : found.all()) diagnostics.add(d);
-    return ok && !(options.strict && !found.all().empty());
+    const auto isWarning = [](const Diagnostic& d) { return d.severity == Severity::Warning; };
+    return ok && !(options.strict && std::any_of(found.all().begin(), found.all().end(), isWarning));
 }
 
 void Compiler::generate(const doc::Document& document, std::span<const doc::ElementId> elements,

@@ -111,7 +111,7 @@ struct UniformBinding : ValueDescription {
 };
 
 // A value that is part of the program, although the interface is not baked, because it decides what the program
-// consists of: to change it, generate again. What is neither here nor a uniform has no effect while these stay.
+// consists of: to change it, generate again.
 struct FixedValue : ValueDescription {
     std::string path;
     ir::Type type = ir::Type::Float;
@@ -160,6 +160,8 @@ struct Shader {
     std::vector<UniformBinding> uniforms;
     std::vector<BlockBinding> blocks;
     std::vector<FixedValue> regenerate;
+    std::vector<std::string> withoutEffect;  // paths of values that nothing reads while those of `regenerate` stay; not
+                                             // known of a baked interface
     std::vector<VertexInputBinding> inputs;
     std::vector<TextureBinding> textures;
     std::shared_ptr<const Program> program;

@@ -95,6 +95,10 @@ std::string inspectionText(std::span<const Inspection> found) {
     for (const Inspection& i : found) {
         text += i.element + "\n";
         if (i.lobes) addLobes(text, *i.lobes);
+        if (i.withoutEffect && !i.withoutEffect->empty()) {
+            text += "  values without effect\n";
+            for (const std::string& path : *i.withoutEffect) text += "    " + path + "\n";
+        }
         if (i.costs) addCosts(text, *i.costs);
     }
     return text;
@@ -172,6 +176,12 @@ std::string inspectionJson(std::span<const Inspection> found) {
             json.key("cost");
             json.openArray();
             for (const NodeCost& c : *i.costs) write(json, c);
+            json.closeArray();
+        }
+        if (i.withoutEffect) {
+            json.key("withoutEffect");
+            json.openArray();
+            for (const std::string& path : *i.withoutEffect) json.text(path);
             json.closeArray();
         }
         json.closeObject();

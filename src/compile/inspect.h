@@ -16,6 +16,7 @@ struct Inspection {
     std::string element;
     std::optional<std::vector<passes::Lobe>> lobes;
     std::optional<std::vector<passes::NodeCost>> costs;
+    std::optional<std::vector<std::string>> withoutEffect;  // as Shader has it
 };
 
 std::string inspectionText(std::span<const Inspection> found);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "doc/read.h"
 #include "doc/upgrade.h"
 #include "passes/specialise.h"
@@ -57,6 +59,7 @@ class TextLibrary final : public Library {
         std::vector<sl::SourceFile> sources;
         for (const LibraryFile& f : files)
             if (endsWith(f.name, ".sl")) sources.push_back({f.name, f.text});
+        checkSources(sources, diagnostics);
         std::vector<sl::Signature> known;
         for (Library* l : below) {
             module_.sources.push_back(l);
@@ -79,6 +82,32 @@ class TextLibrary final : public Library {
     }
 
   private:
+    // Functions are found whichever file they are in; but a file that is named has to be there.
+    void checkSources(std::span<const sl::SourceFile> sources, Diagnostics& diagnostics) const {
+        const doc::WellKnown& k = document_.known();
+        std::vector<std::string> names;
+        for (const sl::SourceFile& s : sources) names.push_back(doc::normalPath(s.name));
+        const auto isThere = [&](const std::string& name) { return std::count(names.begin(), names.end(), name) > 0; };
+        for (doc::ElementId e : doc::children(document_, document_.root())) {
+            if (document_[e].category != k.implementation) continue;
+            if (document_.attribute(e, k.target) || document_.attribute(e, k.language)) continue;
+            const std::string_view file = document_.attributeText(e, k.file);
+            const Location where = document_.locate(e, k.file);
+            const std::string folder = doc::directoryOf(where.file).append("/");
+            if (file.empty() || isThere(doc::normalPath(file)) || isThere(doc::normalPath(folder + std::string(file))))
+                continue;
+            Diagnostic& error =
+                diagnostics.error("missing-source", fmt::format("the library has no file '{}' of functions", file));
+            error.where = where;
+            error.path = document_.path(e);
+            std::vector<std::string_view> candidates(names.begin(), names.end());
+            for (std::string_view& c : candidates)
+                if (c.starts_with(folder)) c.remove_prefix(folder.size());
+            const std::string_view near = nearest(file, candidates);
+            if (!near.empty()) error.hint = fmt::format("did you mean '{}'?", near);
+        }
+    }
+
     doc::Document document_;
     doc::DefinitionsTables tables_;
     ir::Module module_;

@@ -36,23 +36,31 @@ struct UiAttributes {
     Name name, folder, min, max, softMin, softMax, step, choices, choiceValues, advanced, unit, unitType, colorspace;
 };
 
+// How a texture is read is the business of whoever binds it: reflection says it with the sampler.
+bool isSampling(std::string_view port) {
+    return port == "uaddressmode" || port == "vaddressmode" || port == "filtertype";
+}
+
 struct Reflector {
     const ReflectionSource& from;
     Shader& shader;
     const doc::Document& d = from.document;
     UiAttributes attributes{d.names()};
     std::unordered_map<Name, std::size_t> firstOf{};  // of a uniform's readings in `authored`
+    std::vector<bool> isRead{};                       // of `authored`, the first of a uniform
 
     void run() {
         shader.textures.reserve(from.interface.pixelUniforms.uniforms.size());
         for (std::size_t i = 0; i < from.authored.size(); i++)
             if (Name uniform = from.authored[i].uniform) firstOf.emplace(uniform, i);
+        isRead.resize(from.authored.size());
         predefined();
         for (Name name : from.interface.pixelUniforms.uniforms)
             if (const Uniform* u = from.module.uniform(name)) u->type == Type::Texture2D ? texture(*u) : live(*u);
         if (from.interface.usesBlocks) blocks();
         if (from.interface.bindingBase >= 0) number();
         regenerated();
+        idle();
         for (const passes::VertexInput& in : from.interface.inputs)
             shader.inputs.push_back({from.spelled.at(in.name), in.type, in.value});
     }
@@ -129,6 +137,7 @@ struct Reflector {
         auto first = firstOf.find(uniform);
         if (first == firstOf.end()) return;
         const graph::Authored& a = from.authored[first->second];
+        isRead[first->second] = true;
         describe(a, to);
         if (!a.element || d[a.element].parent == a.reader) {
             alias(a, spelled, to);
@@ -167,18 +176,12 @@ struct Reflector {
         if (x.name == k.advanced) ui.isAdvanced = d.text(x.value) == "true";
     }
 
-    // How a texture is read is the business of whoever binds it: reflection says it with the sampler.
-    bool isSampling(const graph::Authored& a) const {
-        std::string_view name = d.text(a.port->name);
-        return name == "uaddressmode" || name == "vaddressmode" || name == "filtertype";
-    }
-
     // Values of the program itself, each once however many nodes read it.
     void regenerated() {
         std::unordered_set<doc::ElementId> seen;
         for (const graph::Authored& a : from.authored) {
             if (a.uniform && !from.baked.count(a.uniform)) continue;
-            if (!a.element || isSampling(a) || !seen.insert(a.element).second) continue;
+            if (!a.element || isSampling(d.text(a.port->name)) || !seen.insert(a.element).second) continue;
             FixedValue& v = shader.regenerate.emplace_back();
             v.path = d.path(a.element);
             v.type = graph::typeOf(from.definitions, d.text(a.port->type));
@@ -187,6 +190,15 @@ struct Reflector {
             if (v.value.empty()) v.text = text;
             describe(a, v);
         }
+    }
+
+    // Values that nothing reads, once the shader is what it is.
+    void idle() {
+        std::unordered_set<doc::ElementId> seen;
+        for (const graph::Authored& a : from.authored)
+            if (a.element && a.uniform && !from.baked.count(a.uniform) && !isRead[firstOf.at(a.uniform)] &&
+                !isForHost(d.text(a.port->name)) && seen.insert(a.element).second)
+                shader.withoutEffect.push_back(d.path(a.element));
     }
 };
 
@@ -341,6 +353,8 @@ void writeFixed(JsonWriter& json, const FixedValue& v) {
 
 }  // namespace
 
+bool isForHost(std::string_view port) { return isSampling(port) || port == "default"; }
+
 void reflect(const ReflectionSource& from, Shader& shader) { Reflector{from, shader}.run(); }
 
 std::string Shader::reflection() const {
@@ -369,6 +383,9 @@ std::string Shader::reflection() const {
     });
     list("regenerate", [&] {
         for (const FixedValue& v : regenerate) writeFixed(json, v);
+    });
+    list("withoutEffect", [&] {
+        for (const std::string& path : withoutEffect) json.text(path);
     });
     list("samplers", [&] {
         // The maps of the environment close around it, from pole to pole.

@@ -24,6 +24,9 @@ struct ReflectionSource {
 // Fills in everything of the shader but its element, texts, hash and program.
 void reflect(const ReflectionSource& from, Shader& shader);
 
+// Whether what a port says is for whoever binds textures and meshes: it has an effect without being in a text.
+bool isForHost(std::string_view port);
+
 // A hash of texts, the same in every run and on every machine.
 std::uint64_t stableHash(std::string_view text, std::uint64_t seed = 0);
 

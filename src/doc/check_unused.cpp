@@ -108,7 +108,7 @@ void reportUnrendered(const Document& d, bool isAll, Diagnostics& diagnostics) {
     std::vector<std::pair<ElementId, std::string>> materials, others;
     for (std::uint32_t i = 1; i < d.size(); i++) {
         const ElementId e(i);
-        if (!d.has(e) || !d[e].parent) continue;
+        if (d[e].category == d.known().input || !d.has(e) || !d[e].parent) continue;
         if (std::string why = whyNoMaterial(d, e); !why.empty())
             materials.emplace_back(e, std::move(why));
         else if (isAll && d[e].parent == d.root() && others.size() < kMost)

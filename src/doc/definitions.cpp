@@ -150,6 +150,8 @@ struct Builder {
             else if (std::find(std::begin(declaring), std::end(declaring), category) != std::end(declaring))
                 t.declarations.push_back(e);
         }
+        std::stable_sort(t.declarations.begin(), t.declarations.end(),
+                         [&](ElementId a, ElementId b) { return d[a].category < d[b].category; });
         std::sort(t.nodedefs.begin(), t.nodedefs.end(), [](const NodeDefRow& a, const NodeDefRow& b) {
             return std::tie(a.category, a.element) < std::tie(b.category, b.element);
         });
@@ -245,6 +247,7 @@ void Definitions::collectStructs() const {
     std::vector<StructDef> waiting;
     for (const ElementRef& e : declared("typedef")) {
         const Document& d = *e.document;
+        if (!d[e.id].firstChild) continue;
         const Name member = d.names().find("member");
         StructDef s{e->name, {}};
         for (ElementId c : children(d, e.id))
@@ -272,9 +275,11 @@ void Definitions::collectStructs() const {
 std::vector<ElementRef> Definitions::declared(std::string_view category) const {
     std::vector<ElementRef> all;
     for (const Layer& layer : layers_) {
-        const Name word = layer.document->names().find(category);
-        for (ElementId e : layer.index.declarations)
-            if ((*layer.document)[e].category == word) all.push_back({layer.document, e});
+        const Document& d = *layer.document;
+        const Name word = d.names().find(category);
+        const std::span<const ElementId> rows = layer.index.declarations;
+        auto at = std::partition_point(rows.begin(), rows.end(), [&](ElementId e) { return d[e].category < word; });
+        for (; at != rows.end() && d[*at].category == word; ++at) all.push_back({&d, *at});
     }
     return all;
 }

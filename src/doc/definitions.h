@@ -64,7 +64,7 @@ struct DefinitionsIndex {
     std::span<const NameRow> names;                      // of the nodedefs, by name
     std::span<const Port> ports;                         // of NodeDefRow::firstPort
     std::span<const ImplementationRow> implementations;  // by key
-    std::span<const ElementId> declarations;             // geometric properties, units, types, colour spaces, in order
+    std::span<const ElementId> declarations;  // geometric properties, units, types, colour spaces, by category
 };
 
 struct DefinitionsTables {

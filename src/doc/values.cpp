@@ -139,10 +139,14 @@ Leniently readNumbers(bool integer, std::uint32_t count, std::string_view text, 
         out.wrong = std::move(list.problem);
         return out;
     }
-    std::string expected = fmt::format("expected {} number{}, found {}", count, count == 1 ? "" : "s",
-                                       list.taken ? fmt::format("{}", list.taken) : "none");
-    if (list.taken < count) out.wrong = std::move(expected);
-    if (list.taken > count) out.note(fmt::format("{}; {}", expected, wholeText(count)));
+    if (list.taken != count) {
+        std::string expected = fmt::format("expected {} number{}, found {}", count, count == 1 ? "" : "s",
+                                           list.taken ? fmt::format("{}", list.taken) : "none");
+        if (list.taken < count)
+            out.wrong = std::move(expected);
+        else
+            out.note(fmt::format("{}; {}", expected, wholeText(count)));
+    }
     if (!list.problem.empty()) out.note("the last comma is left out");
     return out;
 }

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/picture.h"
+
 namespace shaderx::draw {
 
 using image::Image;
@@ -59,12 +61,7 @@ GLuint TextureSet::load(const Texture& texture, Diagnostics& diagnostics) {
     Diagnostics reading;
     Result<Image> picture = image::readImage(texture.file, reading);
     if (!picture) {
-        for (const Diagnostic& d : reading.all()) {
-            Diagnostic& warning =
-                diagnostics.warning("missing-texture", d.message + "; the node's default colour is drawn");
-            warning.where = d.where;
-            warning.path = texture.documentPath;
-        }
+        scene::warnOfMissing(texture, reading, diagnostics);
         return 0;
     }
     GLint maxSide = 0;

@@ -81,8 +81,7 @@ struct Lowerer {
         }
         results.reserve(graph.nodes.size());
         firstResult.reserve(graph.nodes.size());
-        constexpr std::size_t kUsual = 8;
-        if (options.interface != Interface::Baked) module.uniforms.reserve(std::max(kUsual, graph.nodes.size()));
+        if (options.interface != Interface::Baked) module.uniforms.reserve(module.uniforms.size() + valueCount());
         for (const Node& n : graph.nodes) node(n);
         if (!ok) return false;
         for (const Output& o : graph.outputs) {
@@ -94,6 +93,13 @@ struct Lowerer {
         compact(fresh);
         module.put(std::move(fresh));
         return true;
+    }
+
+    // How many uniforms there may be.
+    std::size_t valueCount() const {
+        if (options.interface == Interface::Complete) return graph.inputs.size();
+        const auto isValue = [](const Input& i) { return i.source.kind == Source::Kind::Value; };
+        return static_cast<std::size_t>(std::count_if(graph.inputs.begin(), graph.inputs.end(), isValue));
     }
 
     Diagnostic& error(doc::ElementId at, std::string_view code, std::string message) {
@@ -283,10 +289,22 @@ struct Lowerer {
         if (!failed.count(defName)) kind.function = bodies.functionOf(of.def, diagnostics);
         if (kind.function) return kind;
         bool isFirst = failed.insert(defName).second;  // what is wrong with a definition is said once
-        if (isFirst && diagnostics.errorCount() == errors)
-            error(n.element, "no-implementation",
-                  fmt::format("nothing implements '{}' ({})", d.text(d[n.element].category), d.text(defName)));
+        if (isFirst && diagnostics.errorCount() == errors) noImplementation(n, of.def);
         return kind;
+    }
+
+    // Says what there is for other languages.
+    void noImplementation(const Node& n, doc::NodeDef def) {
+        const std::string_view category = d.text(d[n.element].category), name = d.text(definitions.row(def).name);
+        Diagnostic& e =
+            error(n.element, "no-implementation", fmt::format("nothing implements '{}' ({})", category, name));
+        for (const doc::ElementRef& each : definitions.implementations(def)) {
+            const doc::WellKnown& k = d.known();
+            const Name target = each.attribute(k.target) ? each.attribute(k.target) : each.attribute(k.language);
+            e.notes.push_back({each.document->locate(each.id),
+                               fmt::format("'{}' is for {} alone", d.text(each->name), d.text(target))});
+        }
+        if (!e.notes.empty()) e.hint = "a nodegraph, or an implementation without a target, serves every language";
     }
 
     // The value of an input (`input` is null for outputs of the graph), or none where it has none of its own.

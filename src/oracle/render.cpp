@@ -422,12 +422,7 @@ struct Host {
         if (texture.file.empty()) return nullptr;
         Picture& picture = pictures.at(texture.file);
         if (!picture.image && !std::exchange(picture.isTold, true))
-            for (const Diagnostic& d : picture.reading.all()) {
-                Diagnostic& warning =
-                    diagnostics.warning("missing-texture", d.message + "; the node's default colour is drawn");
-                warning.where = d.where;
-                warning.path = texture.documentPath;
-            }
+            scene::warnOfMissing(texture, picture.reading, diagnostics);
         return picture.image.get();
     }
 

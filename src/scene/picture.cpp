@@ -61,6 +61,18 @@ Image forDisplay(const Settings& settings, Image picture) {
     return picture;
 }
 
+void warnOfMissing(const Texture& texture, const Diagnostics& reading, Diagnostics& diagnostics) {
+    for (const Diagnostic& d : reading.all()) {
+        Diagnostic& warning =
+            diagnostics.warning("missing-texture", d.message + "; the node's default colour is drawn");
+        warning.where = d.where;
+        warning.path = texture.documentPath;
+        if (!texture.where.line) continue;
+        warning.message = fmt::format("'{}': {}", texture.file, warning.message);
+        warning.where = texture.where;
+    }
+}
+
 bool checkOutput(const Settings& settings, Diagnostics& diagnostics) {
     const std::string extension = extensionOf(settings.output);
     if (extension == "png" || extension == "exr" || extension == "pfm") return true;

@@ -21,6 +21,10 @@ void multiply(const std::array<float, 9>& matrix, float* color);
 // A picture as a display has to be told: linear Rec. 709.
 image::Image forDisplay(const Settings& settings, image::Image picture);
 
+// Warns that a texture's file could not be read, for the reasons that `reading` has: missing-texture, where the
+// document names the file.
+void warnOfMissing(const Texture& texture, const Diagnostics& reading, Diagnostics& diagnostics);
+
 // Whether the output's name says what kind of picture it is to be; reports unknown-output-format.
 bool checkOutput(const Settings& settings, Diagnostics& diagnostics);
 

@@ -16,7 +16,9 @@ struct Texture {
                 vAddress = "periodic";  // constant (default colour), black, clamp, periodic, mirror
     std::string filter = "linear";      // closest, linear, cubic (drawn as linear)
     float defaultColor[4] = {0, 0, 0, 0};
-    std::string documentPath;  // of the node, for messages
+    // For messages: the input's path in the document, and its place there.
+    std::string documentPath;
+    Location where{};
 };
 
 // Replaces the value a uniform would have: as many values as it has components (matrices column by column), or a

@@ -79,6 +79,85 @@ TEST(Arguments, WrongUsageHasExitCode2AndSaysWhy) {
     }
 }
 
+TEST(Arguments, UnknownOptionsAreNamed) {
+    const std::string gold = "'" + golden("gold.mtlx").string() + "'";
+    Ran ran = shaderx("draw " + gold + " -o x.png --mesh plane");
+    EXPECT_EQ(ran.exitCode, 2);
+    EXPECT_EQ(ran.errors, "shaderx: draw has no option '--mesh'\nRun with --help for more information.\n");
+    ran = shaderx("generate --elemnt=gold " + gold);
+    EXPECT_EQ(ran.exitCode, 2);
+    EXPECT_TRUE(contains(ran.errors, "no option '--elemnt'\n  hint: did you mean '--element'?\n")) << ran.errors;
+}
+
+TEST(Arguments, UnknownElementsComeWithWhatThereIs) {
+    const std::string two = "'" + golden("two_materials.mtlx").string() + "'";
+    Ran ran = shaderx("generate --element shinny " + two + " -o -");
+    EXPECT_EQ(ran.exitCode, 1);
+    EXPECT_TRUE(contains(ran.errors, "there is no element 'shinny' [unknown-element]\n  hint: did you mean 'shiny'?\n"))
+        << ran.errors;
+    EXPECT_TRUE(contains(shaderx("generate --element matt " + two + " -o -").errors, "hint: what it renders: "));
+}
+
+TEST(Validate, StrictRefusesWarningsButNotNotes) {
+    const std::string folder = testFolder("errors/cli").string();
+    const std::string warned = "'" + folder + "/ignored_volume.mtlx'", noted = "'" + folder + "/idle_value.mtlx'";
+    EXPECT_EQ(shaderx("validate " + warned).exitCode, 0);
+    Ran ran = shaderx("validate --strict " + warned);
+    EXPECT_EQ(ran.exitCode, 1);
+    EXPECT_TRUE(contains(ran.errors, "error: a volume below a surface is not drawn on rasters")) << ran.errors;
+    ran = shaderx("validate --strict " + noted);
+    EXPECT_EQ(ran.exitCode, 0);
+    EXPECT_TRUE(contains(ran.errors, "note: the values of ")) << ran.errors;
+    // Warnings of reading refuse too, and nothing is written.
+    OwnFolder own;
+    writeText(own / "old.mtlx",
+              "<materialx><constant name=\"c\" type=\"float\"/>"
+              "<output name=\"o\" type=\"float\" nodename=\"c\"/></materialx>");
+    EXPECT_EQ(shaderx("generate old.mtlx -o out", own.path()).exitCode, 0);
+    EXPECT_EQ(shaderx("generate --strict old.mtlx -o strict", own.path()).exitCode, 1);
+    EXPECT_FALSE(fs::exists(own.path() / "strict/old.o.frag"));
+}
+
+TEST(Library, AFileOfFunctionsThatIsNamedHasToBeThere) {
+    OwnFolder own;
+    fs::create_directories(own.path() / "nodes");
+    writeText(own / "nodes/split.sl", "float twice(float x) { return 2 * x; }\n");
+    const std::string nodedef =
+        "<nodedef name=\"ND_twice\" node=\"twice\"><input name=\"in\" type=\"float\" "
+        "value=\"1\"/><output name=\"out\" type=\"float\"/></nodedef>";
+    writeText(own / "nodes/n.mtlx", "<materialx version=\"1.39\">" + nodedef +
+                                        "<implementation name=\"IM_twice\" nodedef=\"ND_twice\" file=\"spilt.sl\" "
+                                        "function=\"twice\"/></materialx>");
+    const std::string document =
+        "<materialx version=\"1.39\"><twice name=\"t\" type=\"float\"/>"
+        "<output name=\"o\" type=\"float\" nodename=\"t\"/></materialx>";
+    writeText(own / "d.mtlx", document);
+    Ran ran = shaderx("generate d.mtlx --library nodes -o -", own.path());
+    EXPECT_EQ(ran.exitCode, 1);
+    EXPECT_TRUE(contains(ran.errors, "the library has no file 'spilt.sl' of functions [missing-source]")) << ran.errors;
+    EXPECT_TRUE(contains(ran.errors, "did you mean 'split.sl'?")) << ran.errors;
+    fs::rename(own.path() / "nodes/split.sl", own.path() / "nodes/spilt.sl");
+    EXPECT_EQ(shaderx("generate d.mtlx --library nodes -o -", own.path()).exitCode, 0);
+}
+
+TEST(Unknown, NodesWithinDefinitionsMayTakeTheirDefaultsToo) {
+    OwnFolder own;
+    writeText(
+        own / "d.mtlx",
+        "<materialx version=\"1.39\"><nodedef name=\"ND_mine\" node=\"mine\"><output name=\"out\" type=\"float\"/>"
+        "</nodedef><nodegraph name=\"NG_mine\" nodedef=\"ND_mine\"><vendors name=\"v\" type=\"float\"/>"
+        "<add name=\"a\" type=\"float\"><input name=\"in1\" type=\"float\" nodename=\"v\"/>"
+        "<input name=\"in2\" type=\"float\" value=\"0.5\"/></add>"
+        "<output name=\"out\" type=\"float\" nodename=\"a\"/></nodegraph><mine name=\"m\" type=\"float\"/>"
+        "<output name=\"o\" type=\"float\" nodename=\"m\"/></materialx>");
+    Ran ran = shaderx("generate d.mtlx -o -", own.path());
+    EXPECT_EQ(ran.exitCode, 1);
+    EXPECT_TRUE(contains(ran.errors, "there is no node <vendors>")) << ran.errors;
+    ran = shaderx("generate d.mtlx --unknown default -o -", own.path());
+    EXPECT_EQ(ran.exitCode, 0) << ran.errors;
+    EXPECT_TRUE(contains(ran.errors, "warning: there is no node <vendors>")) << ran.errors;
+}
+
 TEST(Generate, WritesThreeFilesForEachElement) {
     OwnFolder own;
     Ran ran = shaderx("generate '" + golden("two_materials.mtlx").string() + "' -o deep/er", own.path());

@@ -30,7 +30,8 @@ class Inspect : public testing::TestWithParam<fs::path> {
         for (doc::ElementId e : compiler_.renderableElements(*document_)) {
             auto lobes = compiler_.lobes(*document_, e, how, diagnostics_);
             auto costs = compiler_.costs(*document_, e, how, diagnostics_);
-            if (lobes && costs) found.push_back({document_->path(e), *lobes, *costs});
+            auto shader = compiler_.generate(*document_, e, how, diagnostics_);
+            if (lobes && costs && shader) found.push_back({document_->path(e), *lobes, *costs, shader->withoutEffect});
         }
         return found;
     }
@@ -58,6 +59,7 @@ TEST_P(Inspect, JsonSaysTheSame) {
             EXPECT_EQ(json[i]["lobes"][k].contains("weight"), lobe.remains);
             EXPECT_NE(json[i]["lobes"][k].contains("removed"), lobe.remains);
         }
+        EXPECT_EQ(json[i]["withoutEffect"], Json(*found[i].withoutEffect));
         ASSERT_EQ(json[i]["cost"].size(), found[i].costs->size());
         for (std::size_t k = 0; k < found[i].costs->size(); k++)
             EXPECT_EQ(json[i]["cost"][k]["fixed"]["instructions"], (*found[i].costs)[k].fixed.instructions);

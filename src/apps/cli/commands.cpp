@@ -20,23 +20,37 @@ int validate(const Options& options) {
     return s.exitCode();
 }
 
+static Inspection inspected(Session& s, const doc::Document& document, doc::ElementId element,
+                            Diagnostics& diagnostics) {
+    const Options& o = s.options;
+    const bool all = !o.lobes && !o.cost && !o.idle;
+    Inspection one{document.path(element), {}, {}, {}};
+    if (all || o.lobes)
+        if (auto lobes = s.compiler.lobes(document, element, s.how(), diagnostics)) one.lobes = std::move(*lobes);
+    if ((all || o.cost) && !diagnostics.hasErrors())
+        if (auto costs = s.compiler.costs(document, element, s.how(), diagnostics)) one.costs = std::move(*costs);
+    if ((all || o.idle) && !diagnostics.hasErrors()) {
+        GenerateOptions how = s.how();
+        how.dumps = nullptr;
+        if (how.interface == Interface::Baked) how.interface = Interface::Live;  // which still knows its values
+        Diagnostics own;
+        Result<Shader> shader = s.compiler.generate(document, element, how, own);
+        if (shader) one.withoutEffect = std::move(shader->withoutEffect);
+        if (diagnostics.all().empty()) diagnostics = std::move(own);  // what the others tell, too
+    }
+    return one;
+}
+
 int inspect(const Options& options) {
     Session s{options};
     if (!s.start()) return s.exitCode();
-    bool both = !options.lobes && !options.cost;
     std::vector<Inspection> found;
     for (const std::string& file : options.files) {
         std::unique_ptr<doc::Document> document = s.read(file);
         if (!document) continue;
-        for (doc::ElementId element : s.elements(file, *document)) {
+        for (doc::ElementId element : s.elements(*document)) {
             Diagnostics diagnostics;
-            Inspection one{document->path(element), {}, {}};
-            if (both || options.lobes)
-                if (auto lobes = s.compiler.lobes(*document, element, s.how(), diagnostics))
-                    one.lobes = std::move(*lobes);
-            if ((both || options.cost) && !diagnostics.hasErrors())
-                if (auto costs = s.compiler.costs(*document, element, s.how(), diagnostics))
-                    one.costs = std::move(*costs);
+            Inspection one = inspected(s, *document, element, diagnostics);
             if (s.report(diagnostics, "inspect " + file + " --element " + one.element)) found.push_back(std::move(one));
         }
     }

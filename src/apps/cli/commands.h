@@ -26,7 +26,7 @@ struct Options {
     float exposure = 0;
     bool progress = false;
     // of inspect
-    bool lobes = false, cost = false, json = false;
+    bool lobes = false, cost = false, idle = false, json = false;
     // of upgrade
     bool explain = false;
     // of eval

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "apps/cli/progress.h"
 #include "apps/cli/session.h"
 #include "draw/loader.h"
@@ -58,7 +60,7 @@ static std::optional<scene::WorkingSpace> workingSpace(const Compiler& compiler,
 }
 
 static scene::Settings settingsOf(const Options& options, const Session& s, const std::string& file,
-                                  const Shader& shader) {
+                                  const doc::Document& document, const Shader& shader) {
     scene::Settings settings;
     settings.size = options.size;
     settings.samples = options.samples;
@@ -73,6 +75,8 @@ static scene::Settings settingsOf(const Options& options, const Session& s, cons
     for (const TextureBinding& t : shader.textures) {
         scene::Texture texture{
             t.uniform, resolved(options, file, t.file), t.uAddress, t.vAddress, t.filter, {0, 0, 0, 0}, t.path};
+        if (doc::ElementId input = document.find(t.path))
+            texture.where = document.locate(input, document.known().value);
         std::size_t n = t.defaultColor.size();
         for (std::size_t i = 0; i < 4; i++)
             texture.defaultColor[i] = n == 1 ? t.defaultColor[0] : i < n ? t.defaultColor[i] : i == 3 ? 1.0f : 0.0f;
@@ -81,18 +85,33 @@ static scene::Settings settingsOf(const Options& options, const Session& s, cons
     return settings;
 }
 
+// A picture shows one element.
+static void tellOthers(Session& s, const doc::Document& document, const std::vector<doc::ElementId>& elements) {
+    constexpr std::size_t kNamed = 4;
+    Diagnostics diagnostics;
+    Diagnostic& n = diagnostics.note("first-of-several", fmt::format("'{}' is drawn, the first of {} elements",
+                                                                     document.path(elements[0]), elements.size()));
+    n.where = document.locate(elements[0]);
+    std::string others;
+    for (std::size_t i = 1; i < std::min(elements.size(), kNamed + 1); i++)
+        others += (i > 1 ? ", " : "") + document.path(elements[i]);
+    n.hint = "--element draws another: " + others + (elements.size() > kNamed + 1 ? ", …" : "");
+    s.report(diagnostics);
+}
+
 int draw(const Options& options) {
     Session s{options};
     if (!s.start()) return s.exitCode();
     const std::string& file = options.files[0];
     std::unique_ptr<doc::Document> document = s.read(file);
     if (!document) return s.exitCode();
-    std::vector<doc::ElementId> elements = s.elements(file, *document);
+    std::vector<doc::ElementId> elements = s.elements(*document);
     if (elements.empty()) return s.exitCode();
+    if (elements.size() > 1) tellOthers(s, *document, elements);
     Result<Shader> shader = shaderOf(s, file, *document, elements[0]);
     if (!shader || !options.dump.empty()) return s.exitCode();
 
-    scene::Settings settings = settingsOf(options, s, file, *shader);
+    scene::Settings settings = settingsOf(options, s, file, *document, *shader);
     Diagnostics diagnostics;
     if (options.with == "interpreter") {
         Progress progress(options.progress);

@@ -26,7 +26,7 @@ struct Work {
 void read(Session& s, Work& work, KeptFiles* kept = nullptr) {
     work.document = s.read(work.file, kept);
     if (!work.document) return;
-    work.elements = s.elements(work.file, *work.document);
+    work.elements = s.elements(*work.document);
     for (doc::ElementId e : work.elements)
         work.stems.push_back(stemOf(work.file) + "." + fileNameOf(work.document->path(e)));
 }

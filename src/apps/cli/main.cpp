@@ -1,10 +1,14 @@
 // shaderx: materials to shaders, on the command line.
 #include <algorithm>
+#include <cstdio>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "apps/cli/commands.h"
+#include "base/diagnostics.h"
 
 namespace {
 
@@ -25,9 +29,8 @@ void common(CLI::App& command, Options& o) {
         ->allow_extra_args(false);
 }
 
-void shading(CLI::App& command, Options& o) {
-    command.add_option("--element", o.element,
-                       "the element to compile, by its path; default: all that can be rendered");
+void shading(CLI::App& command, Options& o, const char* usual = "all that can be rendered") {
+    command.add_option("--element", o.element, std::string("the element to compile, by its path; default: ") + usual);
     command
         .add_option("--interface", o.interface,
                     "complete: all values are uniforms; live: authored ones are; baked: none")
@@ -71,7 +74,7 @@ void drawing(CLI::App& command, Options& o) {
     command.add_option("-j,--jobs", o.jobs, "threads of the interpreter; 0, the default: one a core")
         ->check(CLI::Range(0, shaderx::cli::kMostThreads));
     command.add_flag("--progress", o.progress, "how far the interpreter is, in lines, also where there is no terminal");
-    shading(command, o);
+    shading(command, o, "the first that can be rendered");
     common(command, o);
 }
 
@@ -79,6 +82,7 @@ void inspecting(CLI::App& command, Options& o) {
     command.add_option("FILE", o.files, "documents; - is standard input")->required();
     command.add_flag("--lobes", o.lobes, "which lobes remain, with which weights, and what removed the others");
     command.add_flag("--cost", o.cost, "instructions and reads by node");
+    command.add_flag("--idle", o.idle, "authored values that have no effect");
     command.add_flag("--json", o.json, "as JSON");
     shading(command, o);
     common(command, o);
@@ -100,6 +104,32 @@ void evaluating(CLI::App& command, Options& o) {
         ->allow_extra_args(false);
     command.add_option("--function", o.function, "its name; default: the last one of the file");
     command.add_option("ARGS", o.arguments, "a value for each parameter: 0.5, or 1,2,3 with components, or true");
+}
+
+// Names the first option that a command does not have: CLI11 counts what stands behind it as one file too many.
+bool sayUnknownOption(const CLI::App& app, int argc, char** argv) {
+    const auto chosen = app.get_subcommands();
+    if (chosen.empty()) return false;
+    const CLI::App& command = *chosen[0];
+    bool isInside = false;
+    for (int i = 1; i < argc; i++) {
+        const std::string_view word = argv[i];
+        if (word == "--") return false;
+        const std::string name(word.substr(0, word.find('=')));
+        if (isInside && word.starts_with("--") && !command.get_option_no_throw(name)) {
+            std::vector<std::string> known;
+            for (const CLI::Option* option : command.get_options())
+                if (!option->get_lnames().empty()) known.push_back("--" + option->get_lnames()[0]);
+            const std::string_view near = shaderx::nearest(name, {known.begin(), known.end()});
+            std::fprintf(stderr, "shaderx: %s has no option '%s'\n", command.get_name().c_str(),
+                         shaderx::visible(name).c_str());
+            if (!near.empty()) std::fprintf(stderr, "  hint: did you mean '%s'?\n", std::string(near).c_str());
+            std::fprintf(stderr, "Run with --help for more information.\n");
+            return true;
+        }
+        isInside = isInside || word == command.get_name();
+    }
+    return false;
 }
 
 }  // namespace
@@ -137,6 +167,7 @@ int main(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
+        if (sayUnknownOption(app, argc, argv)) return shaderx::cli::kBadUsage;
         return app.exit(e) == 0 ? shaderx::cli::kDone : shaderx::cli::kBadUsage;
     }
     if (*generate) return shaderx::cli::generate(o);

@@ -1,8 +1,10 @@
 #include "apps/cli/session.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "apps/cli/files.h"
@@ -18,10 +20,15 @@ static void tell(const Diagnostic& d) {
     if (d.code == "limit" && d.hint.empty()) text += "  hint: --limit sets another one\n";
     static const bool colour = isatty(2) && !std::getenv("NO_COLOR");
     if (colour) {
-        const char* word = d.severity == Severity::Warning ? "warning:" : "error:";
-        if (std::size_t at = text.find(word); at != std::string::npos) {
-            text.insert(at + std::string_view(word).size(), "\033[0m");
-            text.insert(at, d.severity == Severity::Warning ? "\033[1;35m" : "\033[1;31m");
+        struct Word {
+            std::string_view text, colour;
+        };
+        static constexpr Word kWords[] = {
+            {"note:", "\033[1;36m"}, {"warning:", "\033[1;35m"}, {"error:", "\033[1;31m"}, {"error:", "\033[1;31m"}};
+        const Word& word = kWords[static_cast<std::size_t>(d.severity)];
+        if (std::size_t at = text.find(word.text); at != std::string::npos) {
+            text.insert(at + word.text.size(), "\033[0m");
+            text.insert(at, word.colour);
         }
     }
     std::fputs(text.c_str(), stderr);
@@ -109,7 +116,23 @@ std::unique_ptr<doc::Document> Session::readAgain(const std::string& file, const
     return document;
 }
 
-std::vector<doc::ElementId> Session::elements(const std::string& file, const doc::Document& document) {
+void Session::unknownElement(const doc::Document& document, Diagnostics& diagnostics) {
+    Diagnostic& e = diagnostics.error("unknown-element", "there is no element '" + options.element + "'");
+    e.where = document.locate(document.root());
+    std::vector<std::string> paths;
+    for (std::uint32_t i = 0; i < document.size(); i++) paths.push_back(document.path(doc::ElementId(i)));
+    if (const std::string_view near = nearest(options.element, {paths.begin(), paths.end()}); !near.empty()) {
+        e.hint = fmt::format("did you mean '{}'?", near);
+        return;
+    }
+    constexpr std::size_t kNamed = 6;
+    const std::vector<doc::ElementId> all = compiler.renderableElements(document);
+    for (std::size_t i = 0; i < std::min(all.size(), kNamed); i++)
+        e.hint += (i ? ", " : "what it renders: ") + document.path(all[i]);
+    if (all.size() > kNamed) e.hint += ", …";
+}
+
+std::vector<doc::ElementId> Session::elements(const doc::Document& document) {
     Diagnostics diagnostics;
     std::vector<doc::ElementId> found;
     if (options.element.empty()) {
@@ -121,7 +144,7 @@ std::vector<doc::ElementId> Session::elements(const std::string& file, const doc
     } else if (doc::ElementId e = document.find(options.element)) {
         found.push_back(e);
     } else {
-        diagnostics.error("unknown-element", "there is no element '" + options.element + "'").where.file = file;
+        unknownElement(document, diagnostics);
     }
     return report(diagnostics) ? found : std::vector<doc::ElementId>();
 }

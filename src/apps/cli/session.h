@@ -55,6 +55,8 @@ struct Session {
                        const Diagnostics& diagnostics);
     int exitCode() const { return bug ? kOurBug : badUsage ? kBadUsage : failed ? kInputErrors : kDone; }
 
+    void unknownElement(const doc::Document& document, Diagnostics& diagnostics);
+
     // Reads the libraries and checks the options that the command line left to check. False after errors.
     bool start();
     // A document, reported on; null after errors. With `kept`, a text that is there already is taken, and its files are
@@ -63,7 +65,7 @@ struct Session {
     // The same document once more, from what was remembered of it. Any number of threads may do so.
     std::unique_ptr<doc::Document> readAgain(const std::string& file, const KeptFiles& kept);
     // The elements that are asked for.
-    std::vector<doc::ElementId> elements(const std::string& file, const doc::Document& document);
+    std::vector<doc::ElementId> elements(const doc::Document& document);
     GenerateOptions how();
 };
 
