@@ -68,7 +68,8 @@ void warnOfMissing(const Texture& texture, const Diagnostics& reading, Diagnosti
         warning.where = d.where;
         warning.path = texture.documentPath;
         if (!texture.where.line) continue;
-        warning.message = fmt::format("'{}': {}", texture.file, warning.message);
+        if (d.message.find(texture.file) == std::string::npos)
+            warning.message = fmt::format("'{}': {}", texture.file, warning.message);
         warning.where = texture.where;
     }
 }

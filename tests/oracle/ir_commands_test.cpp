@@ -94,5 +94,24 @@ TEST_F(IrCommands, DrawKnowsTwoWays) {
     EXPECT_TRUE(fs::exists(own / "a.exr"));
 }
 
+TEST_F(IrCommands, DrawSaysWhichMaterialItTakesAndWhereAMissingTextureIsNamed) {
+    writeText(own / "two.mtlx", R"(<materialx version="1.39">
+  <image name="i" type="color3"><input name="file" type="filename" value="absent.png" /></image>
+  <surface_unlit name="s" type="surfaceshader"><input name="emission_color" type="color3" nodename="i" /></surface_unlit>
+  <surfacematerial name="a" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s" /></surfacematerial>
+  <surfacematerial name="b" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s" /></surfacematerial>
+</materialx>
+)");
+    const Ran ran = shaderx("draw '" + own / "two.mtlx" + "' --size 4 --with interpreter -o '" + own / "x.pfm" + "'");
+    EXPECT_EQ(ran.exitCode, 0) << ran.errors;
+    EXPECT_TRUE(contains(ran.errors,
+                         "two.mtlx:4:3: note: 'a' is drawn, the first of 2 elements [first-of-several]\n"
+                         "  at: a\n  hint: --element draws another: b\n"))
+        << ran.errors;
+    EXPECT_TRUE(contains(ran.errors, "two.mtlx:2:68: warning: cannot read '")) << ran.errors;
+    EXPECT_TRUE(contains(ran.errors, "the node's default colour is drawn [missing-texture]\n  at: i/file\n"))
+        << ran.errors;
+}
+
 }  // namespace
 }  // namespace shaderx::tests

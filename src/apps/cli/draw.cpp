@@ -92,6 +92,7 @@ static void tellOthers(Session& s, const doc::Document& document, const std::vec
     Diagnostic& n = diagnostics.note("first-of-several", fmt::format("'{}' is drawn, the first of {} elements",
                                                                      document.path(elements[0]), elements.size()));
     n.where = document.locate(elements[0]);
+    n.path = document.path(elements[0]);
     std::string others;
     for (std::size_t i = 1; i < std::min(elements.size(), kNamed + 1); i++)
         others += (i > 1 ? ", " : "") + document.path(elements[i]);
