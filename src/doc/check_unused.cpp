@@ -1,6 +1,7 @@
 #include "doc/check_unused.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -65,6 +66,43 @@ struct UnusedFinder {
     }
 };
 
+// Whether a word is of a kind: each word is looked at once, for documents use few and each often.
+class WordKind {
+  public:
+    template <class Judge>
+    bool is(Name word, Judge&& judge) {
+        if (word == last_) return lastVerdict_;
+        last_ = word;
+        const auto [at, isNew] = known_.try_emplace(word);
+        if (isNew) at->second = judge();
+        return lastVerdict_ = at->second;
+    }
+
+  private:
+    std::unordered_map<Name, bool> known_;
+    Name last_;
+    bool lastVerdict_ = false;
+};
+
+// Elements of which nothing is said but that they might be materials.
+class MaterialFinder {
+  public:
+    explicit MaterialFinder(const Document& document) : d(document) {}
+
+    // Whether an element is called a material, or nearly so, by category or type.
+    bool mayBe(ElementId e) {
+        const WellKnown& k = d.known();
+        const Name category = d[e].category;
+        if (categories.is(category, [&] { return d.text(category).ends_with("material"); })) return true;
+        const Name type = d.attribute(e, k.type);
+        return type && types.is(type, [&] { return !nearest(d.text(type), {"material"}).empty(); });
+    }
+
+  private:
+    const Document& d;
+    WordKind categories{}, types{};
+};
+
 // What looks like a material and is none, and why. Empty for everything else.
 std::string whyNoMaterial(const Document& d, ElementId e) {
     const WellKnown& k = d.known();
@@ -105,11 +143,14 @@ void reportUnused(const Document& document, const Resolved& resolved, const std:
 
 void reportUnrendered(const Document& d, bool isAll, Diagnostics& diagnostics) {
     constexpr std::size_t kMost = 8;
+    const WellKnown& k = d.known();
     std::vector<std::pair<ElementId, std::string>> materials, others;
+    MaterialFinder finder(d);
     for (std::uint32_t i = 1; i < d.size(); i++) {
         const ElementId e(i);
-        if (d[e].category == d.known().input || !d.has(e) || !d[e].parent) continue;
-        if (std::string why = whyNoMaterial(d, e); !why.empty())
+        const Name category = d[e].category;
+        if (category == k.input || category == k.output || !category || !d[e].parent) continue;
+        if (std::string why = finder.mayBe(e) ? whyNoMaterial(d, e) : std::string(); !why.empty())
             materials.emplace_back(e, std::move(why));
         else if (isAll && d[e].parent == d.root() && others.size() < kMost)
             if (std::string other = whyNotDrawn(d, e); !other.empty()) others.emplace_back(e, std::move(other));
@@ -119,7 +160,7 @@ void reportUnrendered(const Document& d, bool isAll, Diagnostics& diagnostics) {
     };
     if (!isAll) {
         for (const auto& one : materials) {
-            if (d.attribute(one.first, d.known().type) == d.known().material) continue;
+            if (d.attribute(one.first, k.type) == k.material) continue;
             Diagnostic& w = diagnostics.warning("unrendered-material", told(one));
             w.where = d.locate(one.first);
             w.path = d.path(one.first);

@@ -91,6 +91,7 @@ Connection connection(const Document& d, ElementId port) {
     Wires wires;
     Name value, colorspace, defaultgeomprop;
     for (const Attribute& a : d.attributes(port)) {
+        if (a.name == k.name || a.name == k.type) continue;  // as most are
         if (a.name == k.nodename) wires.nodename = a.value;
         if (a.name == k.nodegraph) wires.nodegraph = a.value;
         if (a.name == k.output) wires.output = a.value;

@@ -52,7 +52,13 @@ WellKnown::WellKnown(NameTable& names)
       language(names.intern("language")),
       filename(names.intern("filename")),
       string(names.intern("string")),
-      typedefName(names.intern("typedef")) {
+      typedefName(names.intern("typedef")),
+      geomprop(names.intern("geomprop")),
+      varname(names.intern("varname")),
+      defaultName(names.intern("default")),
+      fallback(names.intern("fallback")),
+      texcoord(names.intern("texcoord")),
+      geomcolor(names.intern("geomcolor")) {
     constexpr std::string_view kFormat[] = {
         "input",         "output",      "nodegraph",      "nodedef",        "parameter",      "token",
         "look",          "lookgroup",   "implementation", "collection",     "materialassign", "geominfo",

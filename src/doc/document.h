@@ -56,6 +56,7 @@ struct WellKnown {
     Name function, sourcecode, channels, text, material, look, lookgroup, materialassign, collection, multioutput;
     Name materialx, include, comment, textNode, cdata, pi, doctype, trueValue, out, defaultgeomprop, surfaceshader;
     Name empty, enumName, language, filename, string, typedefName;
+    Name geomprop, varname, defaultName, fallback, texcoord, geomcolor;
 
   private:
     std::array<Name, 37> format;

@@ -156,17 +156,18 @@ struct Lowerer {
         kind.isMet = true;
         const NodeKind& of = graph.kindOf(n);
         for (const doc::Port& o : of.outputs) kind.outputs.push_back(typeOf(definitions, d.text(o.type)));
-        for (const doc::Port& i : of.inputs)
-            kind.inputs.push_back({definitions.element(of.def, i).attribute(d.known().defaultgeomprop), {}});
-        for (const Input& i : graph.inputsOf(n)) kind.hasFiles = kind.hasFiles || i.type == Type::Texture2D;
-        const std::string_view category = d.text(definitions.row(of.def).category);
-        kind.isSet = category == "texcoord" || category == "geomcolor";
+        const doc::WellKnown& k = d.known();
+        kind.inputs.reserve(of.inputs.size());
         for (std::size_t i = 0; i < of.inputs.size(); i++) {
-            const std::string_view name = d.text(of.inputs[i].name);
-            if (name == "geomprop" || name == "varname") kind.attributeName = i;
-            if (name == "default" || name == "fallback") kind.attributeDefault = i;
+            const Name name = of.inputs[i].name;
+            kind.inputs.push_back({definitions.element(of.def, of.inputs[i]).attribute(k.defaultgeomprop), {}});
+            if (name == k.geomprop || name == k.varname) kind.attributeName = i;
+            if (name == k.defaultName || name == k.fallback) kind.attributeDefault = i;
         }
-        kind.hasFiles = kind.hasFiles || (definitions.row(of.def).flags & doc::NodeDefRow::HasTokens);
+        const doc::NodeDefRow& row = definitions.row(of.def);
+        kind.isSet = row.category == k.texcoord || row.category == k.geomcolor;
+        kind.hasFiles = row.flags & doc::NodeDefRow::HasTokens;
+        for (const Input& i : graph.inputsOf(n)) kind.hasFiles = kind.hasFiles || i.type == Type::Texture2D;
     }
 
     // What the host is to supply for an attribute that a mesh lacks, where the node says both by value.
@@ -535,8 +536,9 @@ struct Lowerer {
 
     // How the node that reads the texture wants it read; `file` is its input.
     void readHints(Uniform& u, const Node& n, Name file) {
+        const TextureReader reader(definitions, graph.kindOf(n).def, file);
         for (const Name hint : {uaddressmode, vaddressmode, filtertype, defaultColor}) {
-            const HintSource from = hintSource(definitions, graph.kindOf(n).def, file, hint);
+            const HintSource from = reader.source(hint);
             Type type = Type::Void;
             const std::string_view value =
                 from.fixed ? from.fixed.attributeText(d.known().value) : textOfInput(n, from.input, type);

@@ -1,7 +1,5 @@
 #include "graph/texture_hints.h"
 
-#include <vector>
-
 namespace shaderx::graph {
 
 namespace {
@@ -27,25 +25,25 @@ std::string_view addressMode(std::string_view word) {
     return word == "useMetadata" ? "black" : word;
 }
 
-HintSource hintSource(const doc::Definitions& definitions, doc::NodeDef def, Name file, Name wanted) {
-    constexpr int kDeepest = 16;          // graphs that use themselves are reported elsewhere
-    std::vector<doc::ElementRef> within;  // the nodes on the way to the one that reads the file, outermost first
+TextureReader::TextureReader(const doc::Definitions& definitions, doc::NodeDef def, Name file) {
+    constexpr int kDeepest = 16;  // graphs that use themselves are reported elsewhere
     for (int depth = 0; def && depth < kDeepest; depth++) {
         const doc::Implementation how = definitions.implementation(def);
         if (how.kind != doc::Implementation::Kind::Graph) break;
         const Reader reader = readerOf(*how.graph.document, how.graph.id, file);
         if (!reader.node) break;
-        within.push_back({how.graph.document, reader.node});
+        within_.push_back({how.graph.document, reader.node});
         file = reader.input;
         def = definitions.match(*how.graph.document, reader.node).def;
     }
+}
+
+HintSource TextureReader::source(Name wanted) const {
     // Outwards again, as long as each graph hands on an input of its own.
     Name input = wanted;
-    while (!within.empty()) {
-        const doc::ElementRef node = within.back();
-        within.pop_back();
-        const doc::Document& d = *node.document;
-        const doc::ElementId port = d.child(node.id, d.known().input, input);
+    for (std::size_t i = within_.size(); i-- > 0;) {
+        const doc::Document& d = *within_[i].document;
+        const doc::ElementId port = d.child(within_[i].id, d.known().input, input);
         if (!port) return {};
         const Name outer = d.attribute(port, d.known().interfacename);
         if (!outer) return {{}, {&d, port}};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "doc/definitions.h"
 
@@ -13,10 +14,18 @@ struct HintSource {
     doc::ElementRef fixed;  // an input of a node within, whose value it is; none of both: nothing decides it
 };
 
-// Which input of a node of `def` decides what `wanted`, an input of nodes that read textures, is for its file `file`.
-// Where a graph implements the node, that is what the graph hands to the node that reads the file, however deep; else
-// it is the input of that name.
-HintSource hintSource(const doc::Definitions& definitions, doc::NodeDef def, Name file, Name wanted);
+// The node that reads the file `file` of a node of `def`: the node itself or, where a graph implements it, the one that
+// the graph hands the file to, however deep.
+class TextureReader {
+  public:
+    TextureReader(const doc::Definitions& definitions, doc::NodeDef def, Name file);
+    // Which input of the outermost node decides what `wanted`, an input of nodes that read textures, is: what the
+    // graphs hand on, else the input of that name.
+    HintSource source(Name wanted) const;
+
+  private:
+    std::vector<doc::ElementRef> within_;  // the nodes on the way to the one that reads the file, outermost first
+};
 
 // An address mode by the words of MaterialX (constant, clamp, periodic, mirror) and `black`: black and clear beyond the
 // picture. USD says repeat for periodic, and useMetadata where the file is to say it, which ours do not: that is black
