@@ -38,10 +38,11 @@ vector view_direction_in(string space) {
                : normalize(vector(position_object) - (world_inverse_matrix * vector4(eye, 1.0)).xyz);
 }
 
-// A normal read from a tangent space normal map, whose values in [0, 1] stand for [-1, 1].
+// A normal read from a tangent space normal map, whose values in [0, 1] stand for [-1, 1]. One without direction is N
+// itself: what is added to z is too little for any other to change.
 vector apply_normal_map(vector value, vector2 scale, vector N, vector T, vector B) {
     vector direction = value * 2.0 - 1.0;
-    return normalize(T * (direction.x * scale.x) + B * (direction.y * scale.y) + N * direction.z);
+    return normalize(T * (direction.x * scale.x) + B * (direction.y * scale.y) + N * (direction.z + 1e-8));
 }
 
 // The normal map of a height field, from the differences of height and texture coordinates to the neighbouring
