@@ -65,7 +65,8 @@ inline float fresnel_dielectric(float c, float ior)
 // A conductor's reflectance as a curve that costs little per half vector. With x = 1 - c it is
 //     F = base + rise x^5 + c x^2 (bend + dip x^4).
 // The first two terms are Schlick's, dip is Hoffman's (2019, eq. 6) and bend ours. It is exact at the cosines 1, 1/2,
-// 1/7 and 0, and off by less than 0.01 between them for the indices that metals have.
+// 1/7 and 0. For the indices of gold, silver and copper it is off by 0.004 at most, for those of chromium by 0.017 above
+// 1/7 and 0.025 below; for one as extreme as 20 + 32i by 0.038 above.
 void fresnel_curve(color F0, color F60, color F82, output color rise, output color bend, output color dip)
 {
     rise = 1.0 - F0;

@@ -125,7 +125,7 @@ void main()
 {
 	vec3 direction = 2.0 * (0.5 * by_specular_normal + 0.5) - 1.0;
 	vec3 v = normalize(vd.tangentWorld) * direction.x + normalize(vd.bitangentWorld) * direction.y;
-	vec3 surface_normal = normalize(v + normalize(vd.normalWorld) * (direction.z + 1e-08));
+	vec3 surface_normal = normalize(v + normalize(vd.normalWorld) * (direction.z == 0.0 ? 1e-08 : direction.z));
 	float matte_unless_cut = 0.0 < by_specular_opacityThreshold ? 1.0 : by_specular_opacity;
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(surface_normal, -V, surface_normal);

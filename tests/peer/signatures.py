@@ -2,9 +2,9 @@
 
 A signature's documents are its cases: `default` names the nodedef and writes nothing; `written` writes a value of its own
 on every input; `varied` feeds every input that takes numbers with something that changes over the sphere; `signed` does so
-with values below 0 and above 1 where the declaration gives no range; closures have `thinfilm` and `transmission` where they
-have such inputs, which the other cases leave alone; and one case for each further value of an enumeration or a switch
-(`scatter_mode=RT`). Each has one element to draw for each output.
+with values below 0 and above 1 where the declaration gives no range; closures have a case for each group of inputs in which
+makers are known to differ (GROUPS), which the other cases leave alone; and one case for each further value of an
+enumeration or a switch (`scatter_mode=RT`). Each has one element to draw for each output.
 """
 import pathlib
 import xml.etree.ElementTree as xml
@@ -15,7 +15,10 @@ SIZES = {"float": 1, "integer": 1, "vector2": 2, "vector3": 3, "vector4": 4, "co
 FREE = (0.1, 0.9)     # where a declaration gives no range
 SIGNED = (-1.7, 1.9)  # the same, in the case `signed`
 
-# Ranges that a declaration does not give and a node needs to show something, by the input's name.
+# Ranges that a node needs to show something, by the input's name: they come before the declaration's.
+NEEDED = {"emission_luminance": (0.0, 0.5)}  # 1000 would hide all else
+
+# The same where a declaration gives no range.
 RANGES = {"ior": (1.2, 2.2), "exponent": (2.0, 6.0), "thinfilm_thickness": (100.0, 600.0), "thinfilm_ior": (1.2, 1.8),
           "lacunarity": (1.7, 2.3), "temperature": (2000.0, 9000.0), "octaves": (1, 4), "extinction": (1.0, 3.0),
           "operationorder": (0, 1), "min": (0.0, 0.3), "max": (0.6, 1.0), "in_low": (0.0, 0.2), "inlow": (0.0, 0.2),
@@ -24,7 +27,7 @@ RANGES = {"ior": (1.2, 2.2), "exponent": (2.0, 6.0), "thinfilm_thickness": (100.
 # Texts that a declaration gives neither a list nor a value for.
 TEXTS = {"geomprop": "tone", "varname": "tone", "attrname": "tone"}
 
-GROUPS = ("thinfilm", "transmission")
+GROUPS = ("thinfilm", "transmission", "specTrans", "iridescence", "opacity", "useSpecularWorkflow")
 
 
 class Port:
@@ -36,9 +39,10 @@ class Port:
         self.geometric = get("defaultgeomprop")
         self.uniform = get("uniform") == "true"
         self.choices = self._choices(get("enum"), get("enumvalues"))
-        low, high = get("uimin") or get("uisoftmin"), get("uimax") or get("uisoftmax")
-        self.range = None
-        if low is not None and high is not None:
+        # What is usual before what is possible: an index of refraction from 1, not from 0.
+        low, high = get("uisoftmin") or get("uimin"), get("uisoftmax") or get("uimax")
+        self.range = NEEDED.get(self.name)
+        if self.range is None and low is not None and high is not None:
             self.range = float(low.split(",")[0]), float(high.split(",")[0])
 
     def _choices(self, names, values):

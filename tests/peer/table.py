@@ -108,10 +108,10 @@ class Trial:
     def verdict(self):
         if self.fault:
             return "fails"
+        if self.bad:
+            return "differs"
         if self.no_peer or self.undefined == 1:
             return "no peer"
-        if self.bad and not self.undefined:
-            return "differs"
         if self.is_picture:
             good = self.rmse <= PICTURE_LIMIT and not self.is_bright
             return ("formula" if self.by_formula else "same") if good else "differs"
@@ -290,7 +290,7 @@ inputs, with all inputs written, with inputs that change over the sphere, with e
 element is generated in three interfaces, compiled by glslang, drawn, and compared with MaterialX's shader for the same document:
 `same` is {VALUE_LIMIT} at most in every pixel for values (relative above 1), and {PICTURE_LIMIT} root of the mean squared difference at 1,024
 samples for closures, which must not exceed {FURNACE_LIMIT} in a white furnace either (or what MaterialX has there: emission, sums). Where
-MaterialX gives no finite number, as for the arc cosine of 2, nothing is compared. `edges`: the same but for at most {EDGE_LIMIT:.1%} of the pixels, where a
+MaterialX gives no finite number, as for the arc cosine of 2, nothing is compared; ours must be one all the same. `edges`: the same but for at most {EDGE_LIMIT:.1%} of the pixels, where a
 node jumps. `formula`: MaterialX has no such node or cannot draw it, and ours is compared with its formula, written with other nodes.
 `explained`: differs, and is listed below with the reason. `open`: differs, and nobody knows yet who is right.
 
