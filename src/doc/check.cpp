@@ -59,6 +59,7 @@ struct Checker {
     void run();
     void checkName(ElementId e);
     void checkNode(ElementId node);
+    void untyped(ElementId node, Match found);
     void checkChildren(ElementId node);
     void explain(ElementId node, Match found);
     void unknownNode(ElementId node);
@@ -255,11 +256,23 @@ void Checker::explainInputs(ElementId node, const std::vector<NodeDef>& candidat
 }
 
 void Checker::checkNode(ElementId node) {
-    if (!typeOf(node)) error("missing-attribute", fmt::format("<{}> needs a type", text(d[node].category)), node);
     Match found = definitions.match(d, node);
     resolved.nodedefs[node.index] = found.def;
+    if (!typeOf(node)) untyped(node, found);
     if (!found.exact) explain(node, found);
     checkChildren(node);
+}
+
+// A node without a type. One that names its nodedef is none the less understood.
+void Checker::untyped(ElementId node, Match found) {
+    const std::string_view category = text(d[node].category);
+    if (found && d.attribute(node, k.nodedef))
+        warning(
+            "odd-value",
+            fmt::format("<{}> has no type; its nodedef gives {}", category, text(definitions.row(found.def).output)),
+            node);
+    else
+        error("missing-attribute", fmt::format("<{}> needs a type", category), node);
 }
 
 // A misspelt <input> would do nothing.
@@ -279,6 +292,7 @@ Name Checker::upstreamType(ElementId port, const Connection& c, std::string& sou
     Name type = typeOf(c.target);
     if (c.kind != Kind::Node) return type;
     NodeDef def = resolved.nodedefs[c.target.index];
+    if (!type && def) type = definitions.row(def).output;
     if (!c.output) {
         if (type != k.multioutput || !def) return type == k.multioutput ? Name() : type;
         auto outputs = definitions.outputs(def);
@@ -335,6 +349,14 @@ void Checker::checkInterface(ElementId port, const Connection& c) {
     if (const Port* p = def ? definitions.input(def, wanted) : nullptr; p && !c.target) type = p->type;
     if (!c.target && !type) {
         if (inGraph && !def && d.attribute(graph, k.nodedef)) return;  // that nodedef is missing: already said
+        if (is(owner, k.nodegraph) && !is(port, k.output) && !inGraph) {
+            warning("dangling-interfacename",
+                    fmt::format("'{}' names an input '{}' of what is around it, but nothing is; {}", d.path(port),
+                                text(wanted),
+                                d.attribute(port, k.value) ? "its value holds" : "its readers take their defaults"),
+                    port, k.interfacename);
+            return;
+        }
         Diagnostic& out = error("dangling-interfacename",
                                 inGraph ? fmt::format("'{}' has no input '{}'", d.path(graph), text(wanted))
                                         : fmt::format("'{}' is not in a nodegraph with inputs", d.path(port)),

@@ -196,6 +196,10 @@ struct GraphBuilder {
             Connection c = doc::connection(d, port);
             if (c.colorspace) source.colorspace = c.colorspace;
             if (c.value) isInOrder(c.kind == Connection::Kind::None);
+            if (c.kind == Connection::Kind::Interface && !c.target && isOuterPort(port)) {
+                isInOrder(false);
+                c.kind = Connection::Kind::None;
+            }
             if (c.value == d.known().empty && !isText(d.attribute(port, d.known().type))) c.value = {};
             bool isLast = c.kind != Connection::Kind::Output && c.kind != Connection::Kind::Interface;
             if (isLast && longFrom) shortcuts[longFrom] = port;
@@ -243,6 +247,14 @@ struct GraphBuilder {
     // The nodegraph that a port of one of its nodes, or an output of its own, stands in.
     ElementId scopeOf(ElementId port) const {
         return d[port].category == d.known().output ? d[port].parent : doc::scopeOf(d, d[port].parent);
+    }
+
+    // Whether a port is that of a nodegraph which stands in no other. Exporters name inputs there of what was around
+    // it.
+    bool isOuterPort(ElementId port) const {
+        const ElementId owner = d[port].parent;
+        return d[port].category == d.known().input && d[owner].category == d.known().nodegraph &&
+               d[owner].parent == d.root();
     }
 
     // Says once that the ports from this one on lead back to it.
