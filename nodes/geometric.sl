@@ -39,11 +39,10 @@ vector view_direction_in(string space) {
 }
 
 // A normal read from a tangent space normal map, whose values in [0, 1] stand for [-1, 1]. One without direction is N
-// itself.
+// itself: of z a little less than 1 is taken, which changes no other.
 vector apply_normal_map(vector value, vector2 scale, vector N, vector T, vector B) {
-    vector direction = value * 2.0 - 1.0;
-    float up = direction.z == 0.0 ? 1e-8 : direction.z;
-    return normalize(T * (direction.x * scale.x) + B * (direction.y * scale.y) + N * up);
+    vector direction = value * 2.0 - vector(1.0, 1.0, 0.99999994);
+    return normalize(T * (direction.x * scale.x) + B * (direction.y * scale.y) + N * direction.z);
 }
 
 // The normal map of a height field, from the differences of height and texture coordinates to the neighbouring

@@ -94,10 +94,9 @@ void main()
 	vec3 v = texture(brick_color_file, vd.texcoord_0).xyz;
 	vec3 curve = pow(max((v + 0.055) / 1.055, 0.0), vec3(2.4));
 	float brick_roughness = texture(brick_roughness_file, vd.texcoord_0 * brick_roughness_uvtiling).x;
-	vec3 direction = 2.0 * texture(brick_normal_picture_file, vd.texcoord_0).xyz - 1.0;
+	vec3 direction = 2.0 * texture(brick_normal_picture_file, vd.texcoord_0).xyz - vec3(1.0, 1.0, 0.99999994);
 	vec3 v2 = normalize(vd.bitangentWorld) * (brick_normal_scale * direction.y);
-	vec3 v3 = normalize(vd.tangentWorld) * (brick_normal_scale * direction.x) + v2;
-	vec3 brick_normal = normalize(v3 + normalize(vd.normalWorld) * (direction.z == 0.0 ? 1e-08 : direction.z));
+	vec3 brick_normal = normalize(normalize(vd.tangentWorld) * (brick_normal_scale * direction.x) + v2 + normalize(vd.normalWorld) * direction.z);
 	vec3 base_deepened = max(mix(curve, v / 12.92, step(v, vec3(0.04045))), 0.0);
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(brick_normal, -V, brick_normal);

@@ -123,9 +123,9 @@ vec3 microfacet_light2(vec3 N, vec3 V)
 
 void main()
 {
-	vec3 direction = 2.0 * (0.5 * by_specular_normal + 0.5) - 1.0;
-	vec3 v = normalize(vd.tangentWorld) * direction.x + normalize(vd.bitangentWorld) * direction.y;
-	vec3 surface_normal = normalize(v + normalize(vd.normalWorld) * (direction.z == 0.0 ? 1e-08 : direction.z));
+	vec3 direction = 2.0 * (0.5 * by_specular_normal + 0.5) - vec3(1.0, 1.0, 0.99999994);
+	vec3 v = normalize(vd.tangentWorld) * direction.x + normalize(vd.bitangentWorld) * direction.y + normalize(vd.normalWorld) * direction.z;
+	vec3 surface_normal = normalize(v);
 	float matte_unless_cut = 0.0 < by_specular_opacityThreshold ? 1.0 : by_specular_opacity;
 	vec3 V = normalize(u_viewPosition - vd.positionWorld);
 	vec3 N = faceforward(surface_normal, -V, surface_normal);

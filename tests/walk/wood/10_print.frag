@@ -106,9 +106,9 @@ void main()
 	vec3 curve = pow(max((v + 0.055) / 1.055, 0.0), vec3(2.4));
 	float wood_roughness = texture(wood_roughness_file, p).x;
 	vec3 normal = normalize(vd.normalWorld);
-	vec3 direction = 2.0 * texture(wood_relief_file, p).xyz - 1.0;
+	vec3 direction = 2.0 * texture(wood_relief_file, p).xyz - vec3(1.0, 1.0, 0.99999994);
 	vec3 v2 = normalize(vd.tangentWorld) * (NG_wood_relief * direction.x) + normalize(vd.bitangentWorld) * (NG_wood_relief * direction.y);
-	vec3 wood_normal = normalize(v2 + normal * (direction.z == 0.0 ? 1e-08 : direction.z));
+	vec3 wood_normal = normalize(v2 + normal * direction.z);
 	float alpha = SR_lacquered_wood_coat_roughness * SR_lacquered_wood_coat_roughness;
 	vec3 v3 = max(mix(curve, v / 12.92, step(v, vec3(0.04045))) * NG_wood_stain, 0.0);
 	vec3 base_deepened = pow(v3, vec3(SR_lacquered_wood_coat_affect_color * clamp(SR_lacquered_wood_coat, 0.0, 1.0) + 1.0));
