@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include "base/temporary_name.h"
 #include "image/codecs.h"
 
 namespace shaderx::image {
@@ -41,7 +41,7 @@ bool writeFile(const std::string& path, Bytes bytes, Diagnostics& diagnostics) {
         const std::string reason = writeWhole(target, "wb", bytes);
         return reason.empty() || cannotWrite(path, reason, diagnostics);
     }
-    const std::string partial = fmt::format("{}.{}.partial", target, ::getpid());
+    const std::string partial = temporaryNameFor(target);
     std::string reason = writeWhole(partial, "wb", bytes);
     if (reason.empty() && std::rename(partial.c_str(), target.c_str()) != 0) reason = std::strerror(errno);
     if (reason.empty()) return true;

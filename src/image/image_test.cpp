@@ -247,6 +247,9 @@ TEST_F(ImageFiles, LeavesNothingHalfWritten) {
     EXPECT_TRUE(fs::is_symlink(path("link.png")));
     EXPECT_EQ(codeOf(path("old.png")), "");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+    EXPECT_TRUE(writePng(path(std::string(251, 'x') + ".png"), bytes(2, 2, 3), diagnostics_));
+    EXPECT_FALSE(writePng(path(std::string(252, 'x') + ".png"), bytes(2, 2, 3), diagnostics_));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3);
     EXPECT_TRUE(writePng("/dev/null", bytes(2, 2, 3), diagnostics_));
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }

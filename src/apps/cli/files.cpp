@@ -6,8 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include <unistd.h>
-
+#include "base/temporary_name.h"
 #include "doc/file_resolver.h"
 
 namespace shaderx::cli {
@@ -47,18 +46,9 @@ std::optional<doc::ResolvedFile> RecallingResolver::resolve(std::string_view hre
     return found == kept_.includes.end() ? std::nullopt : found->second;
 }
 
-// Where a file is written to before it takes its name: in the same folder, and no longer than a name may be.
-static std::string besideOf(const std::string& file) {
-    constexpr std::size_t kLongest = 255;  // bytes of a name on usual file systems
-    const std::string end = ".part" + std::to_string(getpid());
-    const std::size_t start = file.find_last_of('/') + 1;
-    const std::size_t length = std::min(file.size() - start, kLongest - end.size());
-    return file.substr(0, start + length) + end;
-}
-
 bool writeFile(const std::string& file, std::string_view text, Diagnostics& diagnostics) {
     bool console = file == "-";
-    std::string beside = besideOf(file);
+    std::string beside = temporaryNameFor(file);
     std::FILE* out = console ? stdout : std::fopen(beside.c_str(), "wb");
     bool ok = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
     if (out) ok = (console ? std::fflush(out) : std::fclose(out)) == 0 && ok;

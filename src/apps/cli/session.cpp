@@ -14,9 +14,10 @@ namespace shaderx::cli {
 
 void PrintDump::dump(StageName, const std::string& text) { session.print(text); }
 
-// A diagnostic, its kind in colour on a terminal.
-static void tell(const Diagnostic& d) {
+// A diagnostic, its kind in colour on a terminal. A warning is told once: elements share what they are made of.
+void Session::tell(const Diagnostic& d) {
     std::string text = format(d);
+    if (d.severity == Severity::Warning && d.where.line && !told.insert(text).second) return;
     if (d.code == "limit" && d.hint.empty()) text += "  hint: --limit sets another one\n";
     static const bool colour = isatty(2) && !std::getenv("NO_COLOR");
     if (colour) {

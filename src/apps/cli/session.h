@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "apps/cli/commands.h"
@@ -41,7 +42,8 @@ struct Session {
     PrintDump dumps{*this};
     Limits limits{};
     bool failed = false, bug = false, badUsage = false;
-    Later* later = nullptr;  // where what it has to say is kept, if it is
+    Later* later = nullptr;                  // where what it has to say is kept, if it is
+    std::unordered_set<std::string> told{};  // warnings
 
     // Keeps what it has to say from here on; say() says that of another session, and takes it into the exit code.
     void keepIn(Later& kept) { later = &kept; }
@@ -49,6 +51,7 @@ struct Session {
     // Writes to standard output; reports cannot-write.
     void print(const std::string& text);
 
+    void tell(const Diagnostic& diagnostic);
     // Prints what was found; what the step returned and errors decide the exit code.
     bool report(const Diagnostics& diagnostics, const std::string& replay = {});
     void reportElement(const std::string& file, const doc::Document& document, doc::ElementId element,
