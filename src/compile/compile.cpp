@@ -11,6 +11,7 @@
 #include "compile/explain.h"
 #include "compile/finished.h"
 #include "compile/reflection.h"
+#include "compile/value_effects.h"
 #include "doc/check.h"
 #include "doc/upgrade.h"
 #include "doc/write.h"
@@ -178,50 +179,6 @@ graph::SceneConventions sceneOf(const GenerateOptions& options) {
 BodyOptions bodyOptions(const GenerateOptions& options) {
     return {sceneOf(options), options.maxDepth, options.unknownIsDefault};
 }
-
-// Which values of a document have an effect on anything that it renders.
-class ValueEffects {
-  public:
-    void note(doc::ElementId input, bool hasEffect) { found_.push_back({input, hasEffect}); }
-    // One note for each node with values that have none.
-    void report(const doc::Document& document, Diagnostics& diagnostics) {
-        std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) {
-            return a.input < b.input || (a.input == b.input && a.hasEffect > b.hasEffect);
-        });
-        std::vector<doc::ElementId> idle;  // of one node
-        for (std::size_t i = 0; i < found_.size(); i++) {
-            if (i > 0 && found_[i].input == found_[i - 1].input) continue;
-            if (found_[i].hasEffect) continue;
-            if (!idle.empty() && document[idle[0]].parent != document[found_[i].input].parent)
-                say(document, idle, diagnostics);
-            idle.push_back(found_[i].input);
-        }
-        if (!idle.empty()) say(document, idle, diagnostics);
-    }
-
-  private:
-    struct Found {
-        doc::ElementId input;
-        bool hasEffect;
-    };
-
-    static void say(const doc::Document& document, std::vector<doc::ElementId>& idle, Diagnostics& diagnostics) {
-        constexpr std::size_t kNamed = 4;
-        std::string names;
-        for (std::size_t i = 0; i < std::min(kNamed, idle.size()); i++)
-            names += fmt::format("{}'{}'", i ? ", " : "", document.text(document[idle[i]].name));
-        if (idle.size() > kNamed) names += fmt::format(" and {} more", idle.size() - kNamed);
-        const bool isOne = idle.size() == 1;
-        Diagnostic& n = diagnostics.note("idle-value", fmt::format("the value{} of {} {} no effect", isOne ? "" : "s",
-                                                                   names, isOne ? "has" : "have"));
-        const doc::ElementId at = isOne ? idle[0] : document[idle[0]].parent;
-        n.where = document.locate(at);
-        n.path = document.path(at);
-        idle.clear();
-    }
-
-    std::vector<Found> found_;
-};
 
 // One element on its way to a shader. The stages in the order in which they run.
 struct Compilation {

@@ -16,6 +16,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "draw/draw.h"
@@ -99,11 +100,13 @@ int main(int argc, char** argv) {
     using namespace shaderx;
     const auto number = [&](int i, int usual) { return argc > i ? std::atoi(argv[i]) : usual; };
     if (argc < 2 || number(2, 512) < 1 || number(4, 30) < 1) {
-        std::fputs("usage: bench_gpu JOBS [SIZE SAMPLES FRAMES]\n", stderr);
+        std::fputs("usage: bench_gpu JOBS [SIZE SAMPLES FRAMES], or bench_gpu --driver\n", stderr);
         return 2;
     }
-    const std::vector<Material> all = readJobs(argv[1], number(2, 512), number(3, 16));
-    if (all.empty()) return 1;
+    const bool isAsked = argv[1] == std::string_view("--driver");
+    const std::vector<Material> all =
+        isAsked ? std::vector<Material>() : readJobs(argv[1], number(2, 512), number(3, 16));
+    if (all.empty() && !isAsked) return 1;
     Diagnostics diagnostics;
     const auto context = draw::Context::create(diagnostics);
     if (!context) {
