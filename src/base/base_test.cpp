@@ -121,6 +121,7 @@ TEST(Diagnostics, WhatTerminalsObeyIsWrittenOut) {
     EXPECT_EQ(visible("\u202egnp.\u2066"), "\\u202egnp.\\u2066");      // would be read from the right
     EXPECT_EQ(visible("\xc3(\xff\xe2\x80"), "\\xc3(\\xff\\xe2\\x80");  // no UTF-8, and cut off
     EXPECT_EQ(visible(std::string_view("\0", 1)), "\\x00");
+    EXPECT_EQ(visibleLines("a\n\tb\rc\x1b\n\u009b"), "a\n\tb\\rc\\x1b\n\\x9b");  // a text of lines
 }
 
 TEST(Diagnostics, NothingOfTheUsersReachesATerminalAsItIs) {

@@ -17,8 +17,7 @@ Location locate(std::string_view file, std::string_view text, std::size_t offset
     return where;
 }
 
-// The character at the start of a text and how many bytes it takes; a byte that is no UTF-8 stands for itself.
-static char32_t characterAt(std::string_view text, std::size_t& size) {
+char32_t characterAt(std::string_view text, std::size_t& size) {
     auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char first = byte(0);
     size = first < 0xC0 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
@@ -32,8 +31,8 @@ static char32_t characterAt(std::string_view text, std::size_t& size) {
     return whole ? c : first;
 }
 
-// Characters that move the cursor, set colours, end the line or turn the direction of the text around them.
-static bool isControl(char32_t c) {
+// They move the cursor, set colours, end the line or turn the direction of the text around them.
+bool isControl(char32_t c) {
     return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x61C || c == 0x200E || c == 0x200F || c == 0x2028 ||
            c == 0x2029 || (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
 }
@@ -56,6 +55,18 @@ std::string visible(std::string_view text) {
         text.remove_prefix(size);
     }
     return out;
+}
+
+std::string visibleLines(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    for (;;) {
+        const std::size_t end = text.find_first_of("\n\t");
+        out += visible(text.substr(0, end));
+        if (end == std::string_view::npos) return out;
+        out += text[end];
+        text.remove_prefix(end + 1);
+    }
 }
 
 // A note may show a line of a program below itself, set in.

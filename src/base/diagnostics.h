@@ -40,6 +40,13 @@ struct Diagnostic {
 // The text with what a terminal would obey in place of showing it, written out: control characters (C0, C1, DEL), line
 // ends, marks that turn the direction of text, and bytes that are no UTF-8, as \n, \x1b or \u202e.
 std::string visible(std::string_view text);
+// The same of a text of several lines: line ends and tabs stay.
+std::string visibleLines(std::string_view text);
+// Whether a terminal would obey a character in place of showing it.
+bool isControl(char32_t c);
+// The character at the start of a text that is not empty, and how many bytes it takes; a byte that is no UTF-8 stands
+// for itself, as one of 0x80 to 0xff that takes one.
+char32_t characterAt(std::string_view text, std::size_t& size);
 
 // `file:line:col: error: message [code]`, then the node path, notes and hint, one a line, each with a line end. What
 // comes from the user is made visible.

@@ -173,15 +173,33 @@ Function NodeBodies::start(doc::NodeDef def) const {
     return f;
 }
 
+// From a place in an implementation's source code to that in the document.
+static void placeInCode(doc::ElementRef element, std::string_view code, Location& where) {
+    if (!where.file.empty() || !where.line) return;
+    std::size_t offset = where.column - 1;
+    for (std::size_t line = 1, at = 0; line < where.line; line++) {
+        const std::size_t next = code.find('\n', at) + 1;
+        offset += next - at;
+        at = next;
+    }
+    where = element.document->locateInValue(element.id, element.document->known().sourcecode, offset);
+}
+
 bool NodeBodies::inlineText(doc::NodeDef def, doc::ElementRef element, std::string_view text,
                             Diagnostics& diagnostics) {
     Function f = start(def);
     std::vector<Param> results;
     for (const doc::Port& p : definitions_.outputs(def))
         results.push_back({p.name, graph::typeOf(definitions_, names_.text(p.type))});
-    Location where = element.document->locate(element.id);
-    std::string file = fmt::format("{}:{}: {}", where.file, where.line, names_.text(element->name));
-    return sl::compileInline(made_, f.name, f.params, results, {file, text}, known(), diagnostics);
+    Diagnostics found;
+    const bool ok = sl::compileInline(made_, f.name, f.params, results, {{}, text}, known(), found);
+    for (Diagnostic each : found.all()) {
+        placeInCode(element, text, each.where);
+        for (Note& n : each.notes) placeInCode(element, text, n.where);
+        each.path = element.document->path(element.id);
+        diagnostics.add(std::move(each));
+    }
+    return ok;
 }
 
 // A function of the library as the node's: parameters by position, converted where the types differ.

@@ -496,9 +496,20 @@ TEST(Compile, MistakesInInlineTextAreLocatedInIt) {
     EXPECT_FALSE(s.generate("h"));
     ASSERT_EQ(s.diagnostics.all().size(), 1u) << s.diagnostics.text();
     const Location& where = s.diagnostics.all()[0].where;
-    EXPECT_EQ(where.file, "test.mtlx:3: IM");
-    EXPECT_EQ(where.line, 1u);
-    EXPECT_EQ(where.column, 10u);
+    EXPECT_EQ(where.file, "test.mtlx");
+    EXPECT_EQ(where.line, 3u);
+    EXPECT_EQ(where.column, 69u);
+    EXPECT_EQ(s.diagnostics.all()[0].path, "IM");
+}
+
+TEST(Compile, MistakesInInlineTextWithReferencesAreAtTheAttribute) {
+    Session s(wrap(
+        R"(<nodedef name="ND" node="bad"><input name="in" type="float" value="1"/><output name="out" type="float"/></nodedef>
+        <implementation name="IM" nodedef="ND" sourcecode="{{in}}&#10; + {{nothing}}"/><bad name="h" type="float"/>)"));
+    EXPECT_FALSE(s.generate("h"));
+    ASSERT_EQ(s.diagnostics.all().size(), 1u) << s.diagnostics.text();
+    EXPECT_EQ(s.diagnostics.all()[0].where.line, 3u);
+    EXPECT_EQ(s.diagnostics.all()[0].where.column, 48u);
 }
 
 TEST(Compile, ErrorsElsewhereInTheDocumentDoNotMatter) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/diagnostics.h"
 #include "base/names.h"
 #include "base/numbers.h"
 
@@ -136,6 +137,8 @@ void JsonWriter::text(std::string_view value) {
             *to++ = c;
         } else if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) {
             to = fmt::format_to(to, "\\u{:04x}", static_cast<unsigned>(c));
+        } else if (std::size_t size = 1; n && isControl(characterAt(value.substr(i), size))) {
+            to = fmt::format_to(to, "\\u{:04x}", static_cast<unsigned>(characterAt(value.substr(i), size)));
         } else if (n) {
             to = std::copy_n(value.data() + i, n, to);
         } else {

@@ -413,4 +413,16 @@ Location Document::locate(ElementId id, Name attr) const {
     return locateOffset(e.source, offset);
 }
 
+Location Document::locateInValue(ElementId id, Name attr, std::size_t offset) const {
+    if (!has(id)) return {};
+    const Element& e = elements_[id.index];
+    if (e.source >= sources_.size()) return {};
+    const std::string_view source = sources_[e.source].text, value = attributeText(id, attr);
+    const std::size_t name = findAttribute(source, e.offset, text(attr));
+    const std::size_t open = source.find_first_of("\"'", name);
+    const bool isPlain = name != e.offset && open != std::string_view::npos &&
+                         source.substr(open + 1, value.size()) == value && value.find('\n') == std::string_view::npos;
+    return locateOffset(e.source, isPlain ? open + 1 + std::min(offset, value.size()) : name);
+}
+
 }  // namespace shaderx::doc

@@ -140,6 +140,9 @@ class Document {
     std::string path(ElementId id) const;
     // Where the element, or one of its attributes, was written. Unknown (line 0) for elements that were not read.
     Location locate(ElementId id, Name attr = {}) const;
+    // The place of a byte of an attribute's value; that of the attribute where the source writes the value with
+    // references such as &lt;.
+    Location locateInValue(ElementId id, Name attr, std::size_t offset) const;
     // The location of a byte of a source.
     Location locateOffset(std::uint32_t source, std::size_t offset) const;
 

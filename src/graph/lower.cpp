@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <set>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -64,10 +65,11 @@ struct Lowerer {
     Name uaddressmode = d.names().intern("uaddressmode"), vaddressmode = d.names().intern("vaddressmode");
     Name filtertype = d.names().intern("filtertype"), defaultColor = d.names().intern("default");
     Name uniformWord = d.names().intern("uniform"), unit = d.names().intern("unit");
-    std::vector<FileSpace> files{};             // of the node at hand, by input
-    std::unordered_set<Name> failed{};          // nodedefs without a function
-    std::unordered_set<doc::ElementId> told{};  // what says an unknown colour space
-    doc::ElementId scope{};                     // the nodegraph or document whose colour space was asked for last
+    std::vector<FileSpace> files{};                                     // of the node at hand, by input
+    std::unordered_set<Name> failed{};                                  // nodedefs without a function
+    std::unordered_set<doc::ElementId> told{};                          // what says an unknown colour space
+    std::set<std::pair<const doc::Document*, std::uint32_t>> judged{};  // whose value is told to be odd or wrong
+    doc::ElementId scope{};  // the nodegraph or document whose colour space was asked for last
     SaidSpace scopeSays{};
     std::string wanted{};  // room to make a uniform's name in
     bool ok = true;
@@ -86,6 +88,7 @@ struct Lowerer {
         if (!ok) return false;
         for (const Output& o : graph.outputs) {
             ExprId value = fitted(valueOf(o.source, o.type, nullptr, nullptr), o.source, o.type, o.element);
+            if (!value && o.source.kind == Source::Kind::Interface) noParameter(o.source.input, o.element);
             if (!value) value = b.null(o.type);
             b.addResult(o.name ? o.name : d.names().intern("out"), value);  // an element may lack its name
         }
@@ -389,7 +392,7 @@ struct Lowerer {
         else if (type == Type::Texture2D || (options.interface != Interface::Baked && componentCount(type)))
             made = openUniform(*port, element, type, value);
         else
-            made = constant(type, value);
+            made = constant(element, type, value);
         return openInputs[name] = made;
     }
 
@@ -402,26 +405,35 @@ struct Lowerer {
         u.path = fmt::format("{}/{}", owner, name);
         if (type == Type::Texture2D)
             u.file = fileOf(element, value);
-        else
-            u.values = wordsOf(type, value);
+        else if (!readDefault(element, type, value, u.values))
+            return {};
         module.uniforms.push_back(u);
         return b.uniform(u.name, type);
     }
 
     void noParameter(Name name, doc::ElementId port) {
-        error(port, "dangling-interfacename",
-              fmt::format("'{}' has no input '{}'", d.text(definitions.row(implemented).name), d.text(name)));
+        const doc::NodeDef def = implemented ? implemented : graph.interface;
+        if (definitions.input(def, name)) return;  // what is wrong with it is said
+        const doc::ElementId owner = d[port].parent;
+        const doc::ElementId around = d[port].category == d.known().input ? d[owner].parent : owner;
+        error(port, "dangling-interfacename", fmt::format("'{}' has no input '{}'", d.path(around), d.text(name)))
+            .where = d.locate(port, d.known().interfacename);
     }
 
     // Reads a value; what is odd about it, or wrong, is told.
-    bool readPlainly(doc::ElementId element, Type type, std::string_view text, Words& words) {
+    bool readPlainly(doc::ElementRef element, Type type, std::string_view text, Words& words) {
         const bool isRight = readWords(type, text, words);
         if (isRight && !words.isOdd) return true;
-        std::optional<Diagnostic> found = doc::judgeValue(d, element);
-        if (!found) return isRight;
+        return isReadable(element, isRight);
+    }
+
+    // Says what is wrong or odd with the value of an element, once; that of a nodedef has many readers.
+    bool isReadable(doc::ElementRef element, bool otherwise) {
+        std::optional<Diagnostic> found = doc::judgeValue(*element.document, element.id);
+        if (!found) return otherwise;
         const bool isRead = found->severity == Severity::Warning;
         ok = ok && isRead;
-        diagnostics.add(std::move(*found));
+        if (judged.emplace(element.document, element.id.index).second) diagnostics.add(std::move(*found));
         return isRead;
     }
 
@@ -443,16 +455,11 @@ struct Lowerer {
         Name live;
         if (isStruct(type)) {
             value = structConstant(b, definitions, type, text);
-            if (!value) {
-                error(element, "bad-value",
-                      fmt::format("bad value of type {}: expected a value for each member, such as {{0.5; 1}}",
-                                  d.attributeText(element, d.known().type)));
-                return {};
-            }
+            if (!value) return badStruct({&d, element});
         } else if (componentCount(type) == 0) {
             const bool isChoice = type == Type::String && input && isUnknownChoice(element, *input, *owner);
             value = isChoice ? defaultOf(*input, *owner) : constantOf(b, type, text);
-        } else if (!readPlainly(element, type, text, words)) {
+        } else if (!readPlainly({&d, element}, type, text, words)) {
             return {};
         } else {
             if (isLive(type, input, owner)) live = uniform(element, type, words, owner);
@@ -681,11 +688,36 @@ struct Lowerer {
         bool isComplete = options.interface == Interface::Complete && !implemented;
         if (input.type == Type::Texture2D || (isComplete && componentCount(input.type)))
             return inScene(unwritten(input, owner, element, value), element);
-        return usual = inScene(constant(input.type, value), element);
+        return usual = inScene(constant(element, input.type, value), element);
     }
 
-    ExprId constant(Type type, std::string_view text) {
-        return isStruct(type) ? structConstant(b, definitions, type, text) : constantOf(b, type, text);
+    // The value that a port of a nodedef gives.
+    ExprId constant(doc::ElementRef port, Type type, std::string_view text) {
+        if (isStruct(type)) {
+            const ExprId value = structConstant(b, definitions, type, text);
+            return value ? value : badStruct(port);
+        }
+        if (componentCount(type) == 0 || text.empty()) return constantOf(b, type, text);
+        Words words;
+        return readPlainly(port, type, text, words) ? b.constant(type, words.all()) : ExprId();
+    }
+
+    bool readDefault(doc::ElementRef port, Type type, std::string_view text, std::vector<std::uint32_t>& values) {
+        Words words;
+        if (!readPlainly(port, type, text, words)) return false;
+        values.assign(words.all().begin(), words.all().end());
+        return true;
+    }
+
+    ExprId badStruct(doc::ElementRef port) {
+        ok = false;
+        if (!judged.emplace(port.document, port.id.index).second) return {};
+        Diagnostic& e = diagnostics.error(
+            "bad-value", fmt::format("bad value of type {}: expected a value for each member, such as {{0.5; 1}}",
+                                     port.attributeText(d.known().type)));
+        e.where = port.document->locate(port.id, d.known().value);
+        e.path = port.document->path(port.id);
+        return {};
     }
 
     // A colour that a nodedef gives, in the working space.
@@ -708,14 +740,22 @@ struct Lowerer {
         if (u.type == Type::Texture2D) {
             u.file = fileOf(port, value);
             readHints(u, owner, input.port->name);
-        } else if (value.empty()) {
-            u.values.assign(static_cast<std::size_t>(componentCount(u.type)), 0);
-        } else {
-            u.values = wordsOf(u.type, value);
+        } else if (!readDefault(port, u.type, value, u.values)) {
+            return {};
         }
         module.uniforms.push_back(u);
         record(u.name, {}, &input, &owner);
         return b.uniform(u.name, u.type);
+    }
+
+    ExprId badProperty(doc::ElementRef prop, Name attribute) {
+        ok = false;
+        if (!judged.emplace(prop.document, prop.id.index).second) return {};
+        Diagnostic& e = diagnostics.error(
+            "bad-value", fmt::format("bad value of '{}': '{}'", d.text(attribute), prop.attributeText(attribute)));
+        e.where = prop.document->locate(prop.id, attribute);
+        e.path = prop.document->path(prop.id);
+        return {};
     }
 
     ExprId geometricValue(Name property, doc::ElementId at) {
@@ -736,7 +776,9 @@ struct Lowerer {
         for (const doc::Port& p : definitions.inputs(def)) {
             std::string_view text = prop.attributeText(p.name);
             if (text.empty()) text = definitions.element(def, p).attributeText(d.known().value);
-            arguments.push_back(constantOf(b, typeNamed(d.text(p.type)), text));
+            const ExprId argument = constantOf(b, typeNamed(d.text(p.type)), text);
+            if (!argument) return badProperty(prop, p.name);
+            arguments.push_back(argument);
         }
         ExprId value = b.call(function, type, arguments);
         return geometric[property] = value;

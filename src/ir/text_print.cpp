@@ -19,16 +19,19 @@ bool isIdentifier(std::string_view s) {
 
 std::string quoted(std::string_view s) {
     std::string out = "\"";
-    for (char c : s) {
-        const auto byte = static_cast<unsigned char>(c);
+    while (!s.empty()) {
+        std::size_t size = 1;
+        const char32_t c = characterAt(s, size);
+        const bool isShown = !isControl(c) && (c < 0x80 || size > 1);
         if (c == '"' || c == '\\')
-            out += fmt::format("\\{}", c);
+            out += fmt::format("\\{}", s[0]);
         else if (c == '\n')
             out += "\\n";
-        else if (byte < 0x20 || byte == 0x7f)
-            out += fmt::format("\\x{:02x}", byte);
+        else if (isShown)
+            out += s.substr(0, size);
         else
-            out += c;
+            for (char byte : s.substr(0, size)) out += fmt::format("\\x{:02x}", static_cast<unsigned char>(byte));
+        s.remove_prefix(size);
     }
     return out + '"';
 }

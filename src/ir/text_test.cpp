@@ -83,6 +83,22 @@ inline function everything(nv: float, t: texture2d, l: light) -> (out: float, "t
 }
 )";
 
+TEST(Text, NamesThatATerminalWouldObeyComeBackFromEscapes) {
+    NameTable names;
+    Module m{names};
+    const std::string_view odd = "\x1b[31m\u009b\u202e\xff ä";
+    Uniform& u = m.uniforms.emplace_back();
+    u.name = names.intern(odd);
+    u.type = Type::Float;
+    u.values = {0};
+    const std::string text = print(m);
+    EXPECT_NE(text.find("\"\\x1b[31m\\xc2\\x9b\\xe2\\x80\\xae\\xff ä\""), std::string::npos) << text;
+    Module again{names};
+    Diagnostics diagnostics;
+    ASSERT_TRUE(parse(again, "odd.ir", text, diagnostics)) << diagnostics.text();
+    EXPECT_EQ(names.text(again.uniforms[0].name), odd);
+}
+
 TEST(Text, EveryFormRoundTrips) {
     TestModule m = parseModule(kEverything, false);
     const std::string text = print(*m.module);

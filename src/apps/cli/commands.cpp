@@ -54,7 +54,7 @@ int inspect(const Options& options) {
             if (s.report(diagnostics, "inspect " + file + " --element " + one.element)) found.push_back(std::move(one));
         }
     }
-    std::string text = options.json ? inspectionJson(found) : inspectionText(found);
+    std::string text = options.json ? inspectionJson(found) : visibleLines(inspectionText(found));
     std::fputs(text.c_str(), stdout);
     return s.exitCode();
 }

@@ -181,7 +181,7 @@ int evaluate(const Options& options) {
     ir::Interpreter interpreter(source.module, source.diagnostics);
     if (source.diagnostics.hasErrors() || !interpreter.run(*f, arguments, results, defaults)) return source.report();
     for (std::size_t k = 0; k < results.size(); k++)
-        std::puts(fmt::format("{} = {}", source.names.text(f->results[k].name), textOf(results[k])).c_str());
+        std::puts(visible(fmt::format("{} = {}", source.names.text(f->results[k].name), textOf(results[k]))).c_str());
     return source.report();
 }
 

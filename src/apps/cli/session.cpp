@@ -12,7 +12,7 @@
 
 namespace shaderx::cli {
 
-void PrintDump::dump(StageName, const std::string& text) { session.print(text); }
+void PrintDump::dump(StageName, const std::string& text) { session.print(visibleLines(text)); }
 
 // A diagnostic, its kind in colour on a terminal. A warning is told once: elements share what they are made of.
 void Session::tell(const Diagnostic& d) {
@@ -52,7 +52,7 @@ bool Session::report(const Diagnostics& found, const std::string& replay) {
     for (const Diagnostic& d : diagnostics.all()) tell(d);
     if (diagnostics.hasInternal()) {
         bug = true;
-        if (!replay.empty()) std::fprintf(stderr, "  replay: shaderx %s\n", replay.c_str());
+        if (!replay.empty()) std::fprintf(stderr, "  replay: shaderx %s\n", visible(replay).c_str());
     }
     failed = failed || diagnostics.hasErrors();
     return !diagnostics.hasErrors();
@@ -76,7 +76,7 @@ void Session::print(const std::string& text) {
 bool Session::start() {
     Diagnostics diagnostics;
     if (std::string problem = limits.set(options.limits); !problem.empty()) {
-        std::fprintf(stderr, "shaderx: %s\n", problem.c_str());
+        std::fprintf(stderr, "shaderx: %s\n", visible(problem).c_str());
         badUsage = true;
         return false;
     }
@@ -86,7 +86,7 @@ bool Session::start() {
     }
     dumps.active = !options.dump.empty();
     if (dumps.active && !stageNamed(options.dump, dumps.stage)) {
-        std::fprintf(stderr, "shaderx: there is no stage '%s'\n", options.dump.c_str());
+        std::fprintf(stderr, "shaderx: there is no stage '%s'\n", visible(options.dump).c_str());
         badUsage = true;
         return false;
     }

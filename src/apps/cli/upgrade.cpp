@@ -22,9 +22,7 @@ static std::string lineOf(const doc::Edit& e) {
     std::string line = e.where.file + ":" + std::to_string(e.where.line) + ":" + std::to_string(e.where.column) + ": ";
     line += e.was.empty() ? "added " + e.now : e.was + " -> " + e.now;
     if (!e.path.empty()) line += " [" + e.path + "]";
-    for (char& c : line)
-        if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = '?';  // of a name, which a terminal might obey
-    return line + '\n';
+    return visible(line) + '\n';
 }
 
 static void upgradeOne(Session& s, const std::string& file, const std::string& target) {
