@@ -15,7 +15,7 @@ void Explainer::mark(const graph::Graph& graph) {
     for (ElementId e : graph.visited)
         for (; e && e != d_.root(); e = d_[e].parent) upstream_.insert(e);
     for (const graph::NodeKind& kind : graph.kinds)
-        if (definitions_.element(kind.def).document == &d_) mark(kind.def);
+        if (definitions_.element(kind.def).document == &d_) waiting_.push_back(kind.def);
 }
 
 // A definition of the document's own: what declares it, what that inherits, and what implements it.
@@ -50,6 +50,11 @@ bool Explainer::explain(const graph::Graph& graph, Diagnostics& diagnostics) {
     if (!found_) found_ = doc::findMistakes(d_, definitions_, options_);
     upstream_.clear();
     mark(graph);
+    while (!waiting_.empty()) {  // definitions use definitions as deep as a document likes
+        const doc::NodeDef def = waiting_.back();
+        waiting_.pop_back();
+        mark(def);
+    }
     const std::size_t errors = diagnostics.errorCount();
     for (const doc::Finding& f : *found_)
         if (!f.diagnostic.code.starts_with("unused-") && (concerns(f.element) || concerns(f.other)))

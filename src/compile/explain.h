@@ -32,6 +32,7 @@ class Explainer {
     doc::CheckOptions options_;
     std::optional<std::vector<doc::Finding>> found_;
     std::unordered_set<doc::ElementId> upstream_;  // of one explanation
+    std::vector<doc::NodeDef> waiting_{};          // definitions of the document that are yet to be marked
 };
 
 }  // namespace shaderx
