@@ -128,6 +128,15 @@ static std::size_t distance(std::string_view a, std::string_view b, std::size_t 
     return row[a.size()];
 }
 
+bool Unrepeated::isNew(const Diagnostic& d) {
+    std::string key = d.code;
+    for (std::string_view part :
+         {std::string_view(d.message), std::string_view(d.where.file), std::string_view(d.path)})
+        key.append(1, '\0').append(part);
+    key.append(1, '\0').append(std::to_string(d.where.line)).append(1, ':').append(std::to_string(d.where.column));
+    return said_.insert(std::move(key)).second;
+}
+
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& candidates) {
     std::string_view best;
     if (word.size() < 2 || word.size() > 256) return best;  // a letter is like every other

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <vector>
 
 namespace shaderx {
@@ -76,6 +77,15 @@ class Diagnostics {
   private:
     std::vector<Diagnostic> all_;
     std::size_t errors_ = 0, internals_ = 0;
+};
+
+// Tells what says something new from what says the same of the same place.
+class Unrepeated {
+  public:
+    bool isNew(const Diagnostic& d);
+
+  private:
+    std::unordered_set<std::string> said_;
 };
 
 // The candidate nearest to `word` by edit distance, if near enough to be a likely misspelling, else empty.

@@ -449,6 +449,21 @@ struct Compilation {
         return hasShaders;  // else it makes its own, of closures or values
     }
 
+    // A material whose shader is to come through a port of the graph that it is in: alone it is black, which is told.
+    bool isOpenMaterial() {
+        const graph::Node& material = graph.nodes[graph.outputs[0].source.node.index];
+        for (doc::ElementId port : doc::children(document, material.element)) {
+            if (!document.attribute(port, document.known().interfacename)) continue;
+            Diagnostic& w = diagnostics.warning("no-shader",
+                                                "nothing is connected to the port that the shader comes "
+                                                "through: the material is black");
+            w.where = document.locate(port);
+            w.path = document.path(port);
+            return true;
+        }
+        return false;
+    }
+
     // What a material reads and a raster's pixel does not show.
     void warnOfLost() {
         const graph::Output& output = graph.outputs[0];
@@ -482,7 +497,7 @@ struct Compilation {
             return refuse("no-output", "the output has neither a type nor a node that tells it");
         if (ir::isStruct(graph.outputs[0].type))
             return refuse("no-output", "a structure cannot be shown: only its members can");
-        if (isEmptyMaterial()) return refuse("no-shader", "the material has no shader");
+        if (isEmptyMaterial() && !isOpenMaterial()) return refuse("no-shader", "the material has no shader");
         warnOfLost();
         graph.outputs.resize(1);
         if (wants(StageName::Graph)) options.dumps->dump(StageName::Graph, graph::print(graph, definitions));
@@ -626,12 +641,6 @@ struct Compiler::Batch {
     std::optional<Explainer> explainer{};
 };
 
-// Two stages may have met the same mistake.
-static bool isSame(const Diagnostic& a, const Diagnostic& b) {
-    return a.code == b.code && a.message == b.message && a.where.line == b.where.line &&
-           a.where.column == b.where.column && a.where.file == b.where.file && a.path == b.path;
-}
-
 template <class Run>
 bool Compiler::compile(Batch& batch, const doc::Document& document, doc::ElementId element,
                        const GenerateOptions& options, Diagnostics& diagnostics, Run&& run) {
@@ -670,10 +679,9 @@ bool Compiler::compile(Batch& batch, const doc::Document& document, doc::Element
         for (Library* l : state_->libraries()) c.module.sources.push_back(l);
         return run(c);
     });
-    std::vector<const Diagnostic*> all;
+    Unrepeated said;  // two stages may have met the same mistake
     for (const Diagnostic& d : own.all()) {
-        if (std::any_of(all.begin(), all.end(), [&](const Diagnostic* x) { return isSame(*x, d); })) continue;
-        all.push_back(&d);
+        if (!said.isNew(d)) continue;
         Diagnostic told = d;
         if (options.strict && told.severity == Severity::Warning) {
             told.severity = Severity::Error;
@@ -714,10 +722,11 @@ bool Compiler::validate(const doc::Document& document, Diagnostics& diagnostics,
         return doc::validate(document, *batch.definitions, found, {options.unknownIsDefault, false});
     });
     // What is told once compiling begins: nodes without a body, sources with mistakes, materials without a shader.
+    Unrepeated said;
+    for (const Diagnostic& d : found.all()) said.isNew(d);
     const auto addNew = [&](const Diagnostics& later) {
         for (const Diagnostic& d : later.all())
-            if (std::none_of(found.all().begin(), found.all().end(), [&](const auto& x) { return isSame(x, d); }))
-                found.add(d);
+            if (said.isNew(d)) found.add(d);
     };
     const std::vector<doc::ElementId> elements = doc::renderableElements(document);
     if (!elements.empty()) doc::reportUnrendered(document, false, found);

@@ -76,7 +76,8 @@ struct Checker {
     void checkGraph(ElementId e);
     void checkImplementation(ElementId e);
     void checkLook(ElementId e);
-    void checkReference(ElementId e, Name attr, std::string_view what, bool found, Name wanted);
+    void checkReference(ElementId e, Name attr, std::string_view what, bool found, Name wanted,
+                        Severity severity = Severity::Error);
     std::string signature(NodeDef def) const;
 };
 
@@ -348,7 +349,6 @@ void Checker::checkInterface(ElementId port, const Connection& c) {
     NodeDef def = inGraph ? resolved.nodedefs[graph.index] : NodeDef();
     if (const Port* p = def ? definitions.input(def, wanted) : nullptr; p && !c.target) type = p->type;
     if (!c.target && !type) {
-        if (inGraph && !def && d.attribute(graph, k.nodedef)) return;  // that nodedef is missing: already said
         if (is(owner, k.nodegraph) && !is(port, k.output) && !inGraph) {
             warning("dangling-interfacename",
                     fmt::format("'{}' names an input '{}' of what is around it, but nothing is; {}", d.path(port),
@@ -396,10 +396,12 @@ void Checker::checkPort(ElementId port) {
           port, c.attribute);
 }
 
-void Checker::checkReference(ElementId e, Name attr, std::string_view what, bool found, Name wanted) {
+void Checker::checkReference(ElementId e, Name attr, std::string_view what, bool found, Name wanted,
+                             Severity severity) {
     if (!wanted || found) return;
     Diagnostic& out = error(fmt::format("dangling-{}", what == "collection" ? "collection" : text(attr)),
                             fmt::format("there is no {} '{}'", what, text(wanted)), e, attr);
+    out.severity = severity;
     hint(out, wanted, namesIn(d.root(), [&](ElementId c) {
              if (what == "material") return typeOf(c) == k.material;
              return text(d[c].category) == what;
@@ -424,7 +426,8 @@ void Checker::checkGraph(ElementId e) {
     Name nodedef = d.attribute(e, k.nodedef);
     NodeDef def = definitions.implementedBy(d, e);
     resolved.nodedefs[e.index] = def;
-    checkReference(e, k.nodedef, "nodedef", static_cast<bool>(def), nodedef);
+    // A graph of no node's is still one that can be drawn.
+    checkReference(e, k.nodedef, "nodedef", static_cast<bool>(def), nodedef, Severity::Warning);
 }
 
 void Checker::checkImplementation(ElementId e) {

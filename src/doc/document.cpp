@@ -164,13 +164,24 @@ void Document::indexName(ElementId id) const {
     if (slotsUsed_ * 2 >= slots_.size()) growIndex(slotsUsed_ + 1);
     const Element& e = elements_[id.index];
     std::size_t mask = slots_.size() - 1, at = hashChild(e.parent, e.name) & mask;
-    while (slots_[at]) {
+    int alike = 0;
+    for (; slots_[at]; at = (at + 1) & mask) {
         const Element& other = elements_[slots_[at] - 1];
-        hasTwins_ = hasTwins_ || (other.name == e.name && other.parent == e.parent && slots_[at] != id.index + 1);
-        at = (at + 1) & mask;
+        if (slots_[at] == id.index + 1 || other.name != e.name || other.parent != e.parent) continue;
+        hasTwins_ = true;
+        if (++alike == 2) return;  // the first is found, and that it is not alone
     }
     slots_[at] = id.index + 1;
     slotsUsed_++;
+}
+
+// Of more than two children of one name the others are not in the index: where one of the two goes, it is made anew.
+void Document::forgetTwins() {
+    if (!hasTwins_) return;
+    slots_.clear();
+    slotsUsed_ = 0;
+    indexed_.clear();
+    hasTwins_ = false;
 }
 
 void Document::indexChildren(ElementId parent) const {
@@ -297,6 +308,7 @@ void Document::set(ElementId id, Name attr, Name value) {
         }
     if (!found) addAttribute(id, attr, value);
     if (attr != known_.name) return;
+    forgetTwins();
     ownElements_[id.index].name = value;
     ElementId parent = ownElements_[id.index].parent;
     if (parent && parent.index < indexed_.size() && indexed_[parent.index]) indexName(id);
@@ -310,7 +322,9 @@ void Document::unset(ElementId id, Name attr) {
     if (at == end) return;
     std::move(at + 1, end, at);
     e.attributeCount--;
-    if (attr == known_.name) e.name = {};
+    if (attr != known_.name) return;
+    forgetTwins();
+    e.name = {};
 }
 
 void Document::setCategory(ElementId id, std::string_view category) {
@@ -326,6 +340,7 @@ void Document::setOrigin(ElementId id, ElementId from) {
 
 void Document::remove(ElementId id) {
     if (!mayEdit(id)) return;
+    forgetTwins();
     Element& e = ownElements_[id.index];
     ElementId parent = e.parent, before;
     if (!parent) {  // the root, or a comment beside it

@@ -174,6 +174,8 @@ class Document {
     std::size_t badEdits_ = 0;
     bool hasNamespaces_ = false;
 
+    void forgetTwins();
+
     // Children by (parent, name), for parents with many children, filled when first asked for.
     mutable std::vector<std::uint32_t> slots_;  // element + 1, or 0; entries may be stale, so a hit is checked
     mutable std::size_t slotsUsed_ = 0;

@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "doc/upgrade_rules.h"
+#include "doc/write.h"
 
 namespace shaderx::doc {
 
@@ -71,6 +72,7 @@ void Materials::shaderToNode(ElementId e) {
     for (const char* attribute : {"node", "shaderprogram", "shadername"})
         if (program.empty()) program = u.attribute(e, attribute);
     if (program.empty()) return u.warn(e, "the shader does not say which program it runs");
+    if (!isXmlName(program)) return u.warn(e, fmt::format("no node can be called '{}'", program));
     std::string was = u.tag(e), type = typeOfKind(u.attribute(e, "shadertype"));
     d.setCategory(e, program);
     d.set(e, "type", type);
@@ -161,6 +163,10 @@ std::optional<Meaning> Materials::meaning(ElementId reference) {
         return m;
     }
     if (!node) return {};
+    if (!isXmlName(u.text(node))) {
+        u.warn(reference, fmt::format("no node can be called '{}'", u.text(node)), k.node);
+        return {};
+    }
     m.category = u.text(node);
     if (!m.definition && !nodedef)
         if (auto found = nodedefs.find(node); found != nodedefs.end()) m.definition = found->second;

@@ -420,6 +420,14 @@ TEST(Upgrade, BitangentsAreThoseOfTheOtherTwo) {
         R"(<crossproduct name="n_bitangent_cross" type="vector3"><input name="in1" type="vector3" nodename="n_world_normal" /><input name="in2" type="vector3" nodename="t" /></crossproduct>)");
 }
 
+TEST(Upgrade, NamesThatNoNodeCanHaveAreLeftAndTold) {
+    std::string warnings;
+    const std::string made =
+        upgraded(R"(<material name="M"><shaderref name="S" node="&lt;UVTILE>" /></material>)", &warnings, "1.36");
+    EXPECT_EQ(made.find("<<"), std::string::npos) << made;
+    EXPECT_NE(warnings.find("no node can be called '<UVTILE>'"), std::string::npos) << warnings;
+}
+
 TEST(Upgrade, LeavesNewDocumentsAlone) {
     std::string body = R"(<swizzle name="s" type="float" channels="r" />)";
     EXPECT_EQ(upgraded(body, nullptr, "1.39"), body);

@@ -88,11 +88,15 @@ std::string numberProblem(std::string_view item, bool integer) {
     return fmt::format("{} is not an integer", quoted(item));
 }
 
-// A number as it is written by programs that write their own language's: 0.5f, and whole numbers as 2.0.
+// A number as it is written by programs that write their own language's, 0.5f, and with a slip of the hand, 0.5.0.
 std::optional<float> oddFloat(std::string_view item) {
-    if (!item.ends_with('f') && !item.ends_with('F')) return {};
-    return parseFloat(item.substr(0, item.size() - 1));
+    if (item.ends_with('f') || item.ends_with('F')) return parseFloat(item.substr(0, item.size() - 1));
+    const std::size_t second = item.find('.', item.find('.') + 1);
+    if (second == std::string_view::npos || item.find_first_not_of("+-0123456789.") != std::string_view::npos)
+        return {};
+    return parseFloat(item.substr(0, second));
 }
+// Whole numbers as 2.0.
 std::optional<int> oddInt(std::string_view item) {
     std::optional<float> number = parseFloat(item);
     constexpr float kExact = 1 << 24;

@@ -72,6 +72,8 @@ TEST(Values, ReadsWhatOthersWriteAndSaysSo) {
     EXPECT_EQ(v.numbers[1], 2);
     EXPECT_EQ(odd(ValueType::Float, "0.5f", &v), "'0.5f' is read as 0.5");
     EXPECT_EQ(v.numbers[0], 0.5f);
+    EXPECT_EQ(odd(ValueType::Float, "-0.25.0", &v), "'-0.25.0' is read as -0.25");
+    EXPECT_EQ(v.numbers[0], -0.25f);
     EXPECT_EQ(odd(ValueType::Integer, "2.0", &v), "'2.0' is read as 2");
     EXPECT_EQ(v.integer, 2);
     for (std::string_view yes : {"True", "TRUE", "1", " true"}) {
@@ -91,7 +93,7 @@ TEST(Values, ReadsWhatOthersWriteAndSaysSo) {
 TEST(Values, SaysWhatIsWrong) {
     EXPECT_EQ(problem(ValueType::Color3, "1, 2"), "expected 3 numbers, found 2");
     EXPECT_EQ(problem(ValueType::Float, ""), "expected 1 number, found none");
-    EXPECT_EQ(problem(ValueType::Float, "0.5.0"), "'0.5.0' is not a number");
+    EXPECT_EQ(problem(ValueType::Float, "0.5.x"), "'0.5.x' is not a number");
     EXPECT_EQ(problem(ValueType::Float, "1, 2, x"), "'x' is not a number");
     EXPECT_EQ(problem(ValueType::Vector2, "1, x"), "'x' is not a number");
     EXPECT_EQ(problem(ValueType::Vector2, "1, nan"), "'nan' is not a number");

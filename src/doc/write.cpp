@@ -1,5 +1,7 @@
 #include "doc/write.h"
 
+#include <algorithm>
+
 namespace shaderx::doc {
 
 namespace {
@@ -140,6 +142,15 @@ std::string write(const Document& document, const WriteOptions& options) {
     for (ElementId e = document.prologue(); e; e = document[e].next) w.tree(e);
     for (ElementId e = document.root(); e; e = document[e].next) w.tree(e);
     return std::move(w.out);
+}
+
+bool isXmlName(std::string_view text) {
+    const auto isFirst = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == ':' ||
+               static_cast<signed char>(c) < 0;
+    };
+    const auto isLater = [&](char c) { return isFirst(c) || (c >= '0' && c <= '9') || c == '-' || c == '.'; };
+    return !text.empty() && isFirst(text[0]) && std::all_of(text.begin(), text.end(), isLater);
 }
 
 }  // namespace shaderx::doc

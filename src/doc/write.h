@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "doc/document.h"
 
@@ -14,5 +15,8 @@ struct WriteOptions {
 
 // Reading the text again gives the same elements and attributes in the same order, comments included.
 std::string write(const Document& document, const WriteOptions& options = {});
+
+// Whether an element can be called so (XML 1.0, production 5; letters beyond ASCII are all taken).
+bool isXmlName(std::string_view text);
 
 }  // namespace shaderx::doc

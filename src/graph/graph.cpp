@@ -110,7 +110,7 @@ struct GraphBuilder {
         if (scope && d[scope].category == k.nodegraph) {
             graph.interface = definitions.implementedBy(d, scope);
             if (graph.interface || doc::isFunctional(d, scope)) functional = scope;
-            if (functional && !graph.interface) return noInterface(scope);
+            if (functional && !graph.interface) noInterface(scope);
         }
         if (category == k.nodegraph) {
             for (ElementId c : doc::children(d, element))
@@ -124,14 +124,17 @@ struct GraphBuilder {
         return ok;
     }
 
-    // A nodegraph that implements a nodedef which does not exist: nobody knows the types and values of its inputs.
-    bool noInterface(ElementId scope) {
+    // A nodegraph that implements a nodedef which does not exist is one with the inputs that it has itself.
+    void noInterface(ElementId scope) {
+        functional = {};
         graph.visited.push_back(scope);
+        isInOrder(false);
         const Name nodedef = d.attribute(scope, d.known().nodedef);
-        error(scope, "dangling-nodedef",
-              nodedef ? fmt::format("there is no nodedef '{}'", d.text(nodedef))
-                      : "the nodedef that this implements does not exist");
-        return false;
+        Diagnostic& w =
+            diagnostics.warning("dangling-nodedef", nodedef ? fmt::format("there is no nodedef '{}'", d.text(nodedef))
+                                                            : "the nodedef that this implements does not exist");
+        w.where = d.locate(scope, d.known().nodedef);
+        w.path = d.path(scope);
     }
 
     void addOutput(ElementId output) {

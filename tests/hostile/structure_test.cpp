@@ -291,6 +291,25 @@ TEST(Size, LongRowsOfPorts) {
     EXPECT_EQ(out.shaders.size(), 1u) << out.errors;
 }
 
+TEST(Size, ManyOfOneName) {
+    std::string body;
+    for (int i = 0; i < 100000; i++) body += "<constant name=\"c\" type=\"float\"/>";
+    expectRefused(compile(wrapped(body + "<output name=\"o\" type=\"float\" nodename=\"c\"/>")), "duplicate-name",
+                  "100,000 nodes of one name");
+}
+
+TEST(Size, DefinitionsWithinEachOther) {
+    std::string body;
+    constexpr int kMany = 20000;
+    for (int i = 0; i < kMany; i++)
+        body += nodedef(fmt::format("ND_u{}", i), fmt::format("u{}", i)) +
+                graphOf(fmt::format("NG_u{}", i), fmt::format("nodedef=\"ND_u{}\"", i),
+                        i + 1 < kMany ? fmt::format("u{}", i + 1) : "constant");
+    expectRefused(compile(wrapped(body + "<u0 name=\"y\" type=\"float\"/><output name=\"o\" type=\"float\" "
+                                         "nodename=\"y\"/>")),
+                  "limit", "20,000 definitions");
+}
+
 TEST(Size, LongInheritance) {
     std::string text;
     for (int i = 0; i < 3000; i++)
