@@ -10,6 +10,7 @@
 #include "compile/bodies.h"
 #include "compile/explain.h"
 #include "compile/finished.h"
+#include "compile/material_check.h"
 #include "compile/reflection.h"
 #include "compile/value_effects.h"
 #include "doc/check.h"
@@ -436,54 +437,6 @@ struct Compilation {
         return false;
     }
 
-    // A material none of whose shaders is connected.
-    bool isEmptyMaterial() const {
-        const graph::Output& output = graph.outputs[0];
-        if (output.type != ir::Type::Material || output.source.kind != graph::Source::Kind::Node) return false;
-        bool hasShaders = false;
-        for (const graph::Input& input : graph.inputsOf(graph.nodes[output.source.node.index])) {
-            if (!ir::isShader(input.type)) continue;
-            hasShaders = true;
-            if (input.source.kind == graph::Source::Kind::Node) return false;
-        }
-        return hasShaders;  // else it makes its own, of closures or values
-    }
-
-    // A material whose shader is to come through a port of the graph that it is in: alone it is black, which is told.
-    bool isOpenMaterial() {
-        const graph::Node& material = graph.nodes[graph.outputs[0].source.node.index];
-        for (doc::ElementId port : doc::children(document, material.element)) {
-            if (!document.attribute(port, document.known().interfacename)) continue;
-            Diagnostic& w = diagnostics.warning("no-shader",
-                                                "nothing is connected to the port that the shader comes "
-                                                "through: the material is black");
-            w.where = document.locate(port);
-            w.path = document.path(port);
-            return true;
-        }
-        return false;
-    }
-
-    // What a material reads and a raster's pixel does not show.
-    void warnOfLost() {
-        const graph::Output& output = graph.outputs[0];
-        if (output.type != ir::Type::Material || output.source.kind != graph::Source::Kind::Node) return;
-        const graph::Node& material = graph.nodes[output.source.node.index];
-        const Name back = names.find("backsurfaceshader");
-        for (const graph::Input& input : graph.inputsOf(material)) {
-            if (input.source.kind != graph::Source::Kind::Node) continue;
-            std::string_view what;
-            if (input.type == ir::Type::DisplacementShader) what = "the displacement";
-            if (input.type == ir::Type::VolumeShader) what = "the volume";
-            if (input.port->name == back) what = "the surface of the back";
-            if (what.empty()) continue;
-            Diagnostic& w = diagnostics.warning("ignored-shader", fmt::format("{} is not drawn yet", what));
-            const doc::ElementId port = document.child(material.element, input.port->name);
-            w.where = document.locate(port ? port : material.element);
-            w.path = document.path(port ? port : material.element);
-        }
-    }
-
     bool makeGraph() {
         Diagnostics own;
         graph.unknownIsDefault = options.unknownIsDefault;
@@ -497,8 +450,7 @@ struct Compilation {
             return refuse("no-output", "the output has neither a type nor a node that tells it");
         if (ir::isStruct(graph.outputs[0].type))
             return refuse("no-output", "a structure cannot be shown: only its members can");
-        if (isEmptyMaterial() && !isOpenMaterial()) return refuse("no-shader", "the material has no shader");
-        warnOfLost();
+        if (!checkMaterial(document, graph, diagnostics)) return refuse("no-shader", "the material has no shader");
         graph.outputs.resize(1);
         if (wants(StageName::Graph)) options.dumps->dump(StageName::Graph, graph::print(graph, definitions));
         return true;
