@@ -118,6 +118,23 @@ TEST(Validate, StrictRefusesWarningsButNotNotes) {
     EXPECT_FALSE(fs::exists(own.path() / "strict/old.o.frag"));
 }
 
+TEST(Inspect, SaysWhatHasNoEffect) {
+    OwnFolder own;
+    writeText(
+        own / "d.mtlx",
+        "<materialx version=\"1.39\"><constant name=\"lost\" type=\"float\"/><standard_surface name=\"s\" "
+        "type=\"surfaceshader\"><input name=\"coat_color\" type=\"color3\" value=\"1, 0.5, 0\"/></standard_surface>"
+        "<surfacematerial name=\"m\" type=\"material\"><input name=\"surfaceshader\" type=\"surfaceshader\" "
+        "nodename=\"s\"/></surfacematerial></materialx>");
+    for (const char* options : {"", "--idle ", "--idle --interface baked "}) {
+        Ran ran = shaderx(std::string("inspect ") + options + "d.mtlx", own.path());
+        EXPECT_EQ(ran.exitCode, 0) << ran.errors;
+        EXPECT_TRUE(contains(ran.errors, "nothing reads the node 'lost' [unused-node]")) << ran.errors;
+        EXPECT_TRUE(contains(ran.output, "  values without effect\n    s/coat_color\n")) << ran.output;
+    }
+    EXPECT_EQ(shaderx("inspect --lobes d.mtlx", own.path()).errors, "");
+}
+
 TEST(Library, AFileOfFunctionsThatIsNamedHasToBeThere) {
     OwnFolder own;
     fs::create_directories(own.path() / "nodes");

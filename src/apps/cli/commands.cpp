@@ -41,6 +41,17 @@ static Inspection inspected(Session& s, const doc::Document& document, doc::Elem
     return one;
 }
 
+// What nothing reads has no effect either.
+static void tellUnused(Session& s, const doc::Document& document) {
+    Diagnostics all, unused;
+    GenerateOptions how = s.how();
+    how.dumps = nullptr;
+    s.compiler.validate(document, all, how);
+    for (const Diagnostic& d : all.all())
+        if (d.code.starts_with("unused-")) unused.add(d);
+    s.report(unused);
+}
+
 int inspect(const Options& options) {
     Session s{options};
     if (!s.start()) return s.exitCode();
@@ -48,6 +59,7 @@ int inspect(const Options& options) {
     for (const std::string& file : options.files) {
         std::unique_ptr<doc::Document> document = s.read(file);
         if (!document) continue;
+        if (options.idle || (!options.lobes && !options.cost)) tellUnused(s, *document);
         for (doc::ElementId element : s.elements(*document)) {
             Diagnostics diagnostics;
             Inspection one = inspected(s, *document, element, diagnostics);
