@@ -357,10 +357,13 @@ void Checker::checkInterface(ElementId port, const Connection& c) {
                     port, k.interfacename);
             return;
         }
+        // The nodedef that is missing may have it.
+        const bool isOrphan = inGraph && !def && d.attribute(graph, k.nodedef);
         Diagnostic& out = error("dangling-interfacename",
                                 inGraph ? fmt::format("'{}' has no input '{}'", d.path(graph), text(wanted))
                                         : fmt::format("'{}' is not in a nodegraph with inputs", d.path(port)),
                                 port, k.interfacename);
+        if (isOrphan) out.severity = Severity::Warning;
         std::vector<std::string_view> names;
         if (inGraph) names = namesIn(graph, [&](ElementId e) { return is(e, k.input); });
         if (def)

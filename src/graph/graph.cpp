@@ -224,10 +224,16 @@ struct GraphBuilder {
                     port = pass(port, c.target);
                     break;
                 case Connection::Kind::Interface: {
-                    Name name = d.attribute(port, d.known().interfacename);
-                    if (functional && scopeOf(port) == functional && (!c.target || isOpen(name))) {
+                    const Name name = d.attribute(port, d.known().interfacename);
+                    const ElementId scope = scopeOf(port);
+                    if (!functional && !c.target) adopt(scope);
+                    if (functional && scope == functional && (!c.target || isOpen(name))) {
                         source.kind = Source::Kind::Interface;
                         source.input = name;
+                        return {};
+                    }
+                    if (!c.target && isOrphan(scope)) {
+                        isInOrder(false);
                         return {};
                     }
                     if (!c.target) {
@@ -250,6 +256,19 @@ struct GraphBuilder {
     // The nodegraph that a port of one of its nodes, or an output of its own, stands in.
     ElementId scopeOf(ElementId port) const {
         return d[port].category == d.known().output ? d[port].parent : doc::scopeOf(d, d[port].parent);
+    }
+
+    // A nodegraph that implements a node may be read as it is: its node's defaults are what it leaves open.
+    void adopt(ElementId scope) {
+        if (!scope || d[scope].category != d.known().nodegraph) return;
+        graph.interface = definitions.implementedBy(d, scope);
+        if (graph.interface) functional = scope;
+    }
+
+    // Whether a nodegraph says that it implements a nodedef which does not exist: that may have what is missing.
+    bool isOrphan(ElementId scope) const {
+        return scope && d[scope].category == d.known().nodegraph && d.attribute(scope, d.known().nodedef) &&
+               !definitions.implementedBy(d, scope);
     }
 
     // Whether a port is that of a nodegraph which stands in no other. Exporters name inputs there of what was around
