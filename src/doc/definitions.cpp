@@ -150,8 +150,8 @@ struct Builder {
             else if (std::find(std::begin(declaring), std::end(declaring), category) != std::end(declaring))
                 t.declarations.push_back(e);
         }
-        std::stable_sort(t.declarations.begin(), t.declarations.end(),
-                         [&](ElementId a, ElementId b) { return d[a].category < d[b].category; });
+        std::sort(t.declarations.begin(), t.declarations.end(),
+                  [&](ElementId a, ElementId b) { return std::tie(d[a].category, a) < std::tie(d[b].category, b); });
         std::sort(t.nodedefs.begin(), t.nodedefs.end(), [](const NodeDefRow& a, const NodeDefRow& b) {
             return std::tie(a.category, a.element) < std::tie(b.category, b.element);
         });
