@@ -46,7 +46,8 @@ static Diagnostics strictly(const Diagnostics& diagnostics) {
 }
 
 bool Session::report(const Diagnostics& found, const std::string& replay) {
-    const Diagnostics& diagnostics = options.strict ? strictly(found) : found;
+    Diagnostics strict;  // a copy only where one is asked for: each element comes by here
+    const Diagnostics& diagnostics = options.strict ? (strict = strictly(found)) : found;
     if (later && !diagnostics.all().empty()) later->sayings.push_back({{}, diagnostics, replay});
     if (later) return !diagnostics.hasErrors();
     for (const Diagnostic& d : diagnostics.all()) tell(d);
